@@ -18,10 +18,14 @@ RUN python -m venv /opt/roughgas \
 
 COPY --chown=roughgas CHANGELOG.md CITATION.cff LICENSE Makefile README.md Snakefile config.yaml pyproject.toml ./
 COPY --chown=roughgas article article
+COPY --chown=roughgas config config
+COPY --chown=roughgas docs docs
 COPY --chown=roughgas profiles profiles
 COPY --chown=roughgas rules rules
 COPY --chown=roughgas src src
+COPY --chown=roughgas studies studies
 COPY --chown=roughgas tests tests
+COPY --chown=roughgas workflow workflow
 RUN /opt/roughgas/bin/python -m pip install --no-cache-dir --no-deps --no-build-isolation --editable .
 
 USER roughgas

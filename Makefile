@@ -55,7 +55,7 @@ test: setup ## run the tests, but for those of `make extras`
 test-fast: setup ## run those tests that need neither a kernel nor a workflow, at each save
 	$(BIN)/python -m pytest -q -n $(JOBS) -m "not ($(EXTRA_TESTS))" $(addprefix tests/,$(FAST))
 
-extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
+extras: .venv/with-browser .venv/with-readers .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)" $(TESTS)
 	@echo "All of these pass, too."
 
@@ -79,13 +79,14 @@ bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
 	@echo "Look at  docs/benchmarks.md"
 
-lint: setup ## check style, format, imports and types
+lint: setup ## check style, format, imports, types and words
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/lint-imports
 	$(BIN)/mypy
-	@echo "Style, format, imports and types are as they should be."
+	$(BIN)/python -m tests.words
+	@echo "Style, format, imports, types and words are as they should be."
 
 format: setup ## bring the sources into format
 	$(BIN)/ruff check --fix
@@ -121,7 +122,7 @@ setup: .venv/ready ## install what is needed into .venv
 
 # apart, since with the plugin installed every snakemake looks for a Slurm first
 .venv-slurm/ready: requirements/slurm.lock .venv/ready
-	@echo "Installing Snakemake with its Slurm plugin into .venv-slurm, once."
+	@echo "Installing Snakemake with its plugins for clusters into .venv-slurm, once."
 	@$(BIN)/python -m venv --clear .venv-slurm
 	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --require-hashes --requirement $<
 	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --no-deps --no-build-isolation --editable .
@@ -132,7 +133,8 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 	$(LOCK) --upgrade --extra docs --constraint requirements.lock --output-file requirements/docs.lock
 	$(LOCK) --upgrade --extra browser --constraint requirements.lock --output-file requirements/browser.lock
 	$(LOCK) --upgrade --extra notebook --constraint requirements.lock --output-file requirements/notebook.lock
-	$(LOCK) --upgrade --extra slurm --constraint requirements.lock --output-file requirements/slurm.lock
+	$(LOCK) --upgrade --extra readers --constraint requirements.lock --output-file requirements/readers.lock
+	$(LOCK) --upgrade --extra slurm --output-file requirements/slurm.lock # S3 needs an older python-dateutil
 	@echo "To see what has changed:  git diff requirements.lock requirements"
 
 clean: ## remove all results; the environment and the committed figures stay

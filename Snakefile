@@ -1,19 +1,20 @@
-# The workflow at a glance: config.yaml says what is simulated, rules/ how, roughgas does the work.
+# The workflow at a glance: config.yaml defines the simulations, rules/ the steps, roughgas runs them.
 #
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 friction                      one question beyond the paper, of a folder of studies/
 #   snakemake -j2 extensions                    all of them
-#   snakemake -j2 evidence                      every published number that we know of beside ours
+#   snakemake -j2 evidence                      every published number known to us, compared with ours
+#   snakemake -j2 evidence_long                 what takes longer: tables studies/NAME/long.csv
 #   snakemake -j2 numbers                       the numbers that docs/results.md quotes
 #   snakemake -j2 article                       the article on this reproduction, a PDF
-#   snakemake -j1 explore                       a page in which to look at every point
-#   snakemake -j1 living                        a page in which a gas moves, with sliders
+#   snakemake -j1 explore                       a page to inspect every point
+#   snakemake -j1 living                        a page with a moving gas and sliders
 #   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
-#   snakemake -j2 movies                        the scenes as they move, one GIF each
-#   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
-#   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
-#   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
+#   snakemake -j2 movies                        movies of the scenes, one GIF each
+#   snakemake -j2 accuracy                      the cost of the next digit, in CPU seconds
+#   snakemake -j2 coverage                      how often error bars hold the truth
+#   snakemake -j2 hard_cases                    cases where simulations may go wrong, with their margins
 #   snakemake -j2 crate                         the run as one file: an RO-Crate
 #   snakemake -j2 deposit                       the same with the article, for an archive
 #   snakemake -j2 fig1a                         a figure by its name, or an experiment's R over its sweep
@@ -21,54 +22,41 @@
 
 
 include: "rules/common.smk"
-include: "rules/messages.smk"
 
 
-# of --sdm apptainer, which gives every rule the environment that Apptainer.def builds
+# for --sdm apptainer: every rule runs in the environment that Apptainer.def builds
 container: image()
-
-
-check_folders()
-config = own_config(config)
-CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
-config = checked_config(CONFIG, config)
-SCALE = config["scale"]
-FIGURES_OF_STUDIES = [
-    figure for one in config[roughgas.config.FOLDERS].values() for figure in one["figures"]
-]
 
 
 wildcard_constraints:
     scale=NAME,
-    # a folder of products has the name of its study
-    experiment=rf"(?!(?:{one_of(config[roughgas.config.FOLDERS])})/){EXPERIMENT}{VARIANT}",
+    # folders of products are named after studies
+    experiment=rf"(?!(?:{alternatives(studies.named)})/){EXPERIMENT}{VARIANT}",
     r=NAME,
     beta=NAME,
     seed=NAME,
     folder=f"({NAME}/)?",
-    figure="|".join(catalogue.figures_of("paper")),
-    # other figures have their own rules
-    plotted=rf"(?!(?:{one_of([*catalogue.FIGURES, *FIGURES_OF_STUDIES])})\.(?:pdf|png)$){NAME}",
+    study_folder=rf"(?:(?:{alternatives(studies.named)})/)?",
+    figure=alternatives(studies.by_figure),
+    # figures of the catalogue and of studies have other rules
+    plotted=rf"(?!(?:{alternatives([*catalogue.FIGURES, *studies.by_figure])})\.(?:pdf|png)$){NAME}",
     movie=NAME,
-    study=NAME,
+    task_folder=alternatives(tasks.by_task_folder),
     task=NAME,
+    combined=alternatives(studies.by_combined),
     family=NAME,
 
 
-include: "rules/report.smk"
 include: "rules/simulate.smk"
 include: "rules/studies.smk"
-include: "rules/evidence.smk"
 include: "rules/products.smk"
-include: "rules/accuracy.smk"
-include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
 
 
 report: "rules/captions/workflow.rst"
 
 
-# on a cluster, these take less than sending them there; of modules Snakemake does not know the names
+# too short to be sent to a cluster; in a module Snakemake does not know these names
 if not IS_MODULE:
 
     localrules:
@@ -86,28 +74,32 @@ if not IS_MODULE:
 rule figures:
     default_target: True
     input:
-        drawn(catalogue.figures_of("paper")),
-        multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
-        documents("claims", "run_times", "config"),
+        from_wildcards(studies.products, study="paper"),
 
 
 rule extensions:
     input:
-        products_of_each,
-        f"results/{SCALE}/extensions.csv" if SWEPT_IN_STUDIES else [],
-        documents("run_times_extensions") if SWEPT_IN_STUDIES else [],
+        extensions_of_run,
+        f"results/{SCALE}/extensions.csv" if run_products.beyond else [],
+        paths.documents(SCALE, "run_times_extensions") if run_products.beyond else [],
 
 
 rule evidence:
     input:
-        drawn(["evidence"]),
-        kept("evidence.csv"),
-        documents("evidence"),
+        paths.figure_files(["evidence"], SCALE),
+        paths.with_copy(SCALE, "evidence.csv"),
+        paths.documents(SCALE, "evidence"),
+
+
+rule evidence_long:
+    # tables of simulations that take hours, which `evidence` reads
+    input:
+        studies.long_tables(),
 
 
 rule numbers:
     input:
-        kept("numbers.json"),
+        paths.with_copy(SCALE, "numbers.json"),
 
 
 rule article:
@@ -132,44 +124,31 @@ rule living:
 
 rule pictures:
     input:
-        [
-            f"results/{SCALE}/pictures/{name}.{kind}"
-            for name in catalogue.figures_of("paper")
-            for kind in ("svg", "pdf")
-        ],
+        expand(
+            f"results/{SCALE}/pictures/{{figure}}.{{suffix}}",
+            figure=studies.paper.drawn,
+            suffix=["svg", "pdf"],
+        ),
 
 
 rule movies:
     input:
-        drawn([f"movies/{movie}" for movie in MOVIES], [".gif", ".mp4"]),
-
-
-rule accuracy:
-    input:
-        drawn(["accuracy", "accuracy_limits"]),
-        f"results/{SCALE}/accuracy.md",
-        documents("accuracy"),
-
-
-rule coverage:
-    input:
-        drawn(["coverage"]),
-        f"results/{SCALE}/coverage.md",
-        documents("coverage"),
+        paths.figure_files(
+            [f"movies/{movie}" for movie in drawings.movies], SCALE, [".gif", ".mp4"]
+        ),
 
 
 rule hard_cases:
     input:
-        f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
-        documents("hard_cases"),
+        f"results/{paths.folder_of(SCALE)}hard_cases.md",
+        paths.documents(SCALE, "hard_cases"),
 
 
 rule everything:
     input:
         rules.figures.input,
         rules.extensions.input,
-        reduced(SCALE, [one for one in config["experiments"] if "." not in one]),
-        reduced(SCALE, SWEPT_IN_STUDIES),
+        from_wildcards(run_products.every_reduced),
         rules.movies.input,
         rules.hard_cases.input,
         rules.accuracy.input,
@@ -179,26 +158,32 @@ rule everything:
         rules.living.input,
 
 
-# figures by their names, and experiments by theirs, but for names that have a rule
-for name in [*catalogue.FIGURES, *STUDY_OF, *config["experiments"]]:
+# targets named after figures and experiments, except for names that have a rule
+for name in [*catalogue.FIGURES, *studies.by_figure, *CONFIGURATION.experiments]:
     if not rules.has(name):
 
         rule:
             name:
                 name
             input:
-                drawn([name]),
+                paths.figure_files([name], SCALE),
 
 
-if not IS_MODULE:
-    logger.addFilter(is_of_use)
-logger.addFilter(say_what_was_meant)
+display = internals.Display(workflow, sweeps, logger)
+logger.addFilter(display.add_remedy)
+if IS_MODULE:
+    internals.leave_default_to_host(workflow, DEFAULT, rules.figures.rule.name)
+else:
+    display.install()
 
 
 onstart:
-    be_alone()
-    start_jobs_at_once(workflow)
+    with exit_on_bad_input():
+        executors.check_executor(internals.executor_of(workflow))
+    internals.lock_workdir()
+    internals.remove_job_rate_limit(workflow)
+    internals.stop_on_sigterm(workflow)
 
 
 onerror:
-    say_how_to_go_on()
+    internals.print_resume_hint()

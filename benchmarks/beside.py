@@ -1,11 +1,11 @@
-"""The kernel of this checkout beside that of another one: the same scene, in turns.
+"""Ratio of the speeds of the kernels of two checkouts: the same scene, in turns.
 
     git worktree add ../before COMMIT
     python -m benchmarks.beside ../before [--case "cooling, packing 0.2"] [--numbers 10000 100000]
 
-Each has a process of its own, which makes so many collisions whenever it is its turn: what else the
-machine does changes less within a second than between two runs. Prints the median of the ratios of
-turns that follow each other, and their quartiles.
+Each kernel has a separate process, which makes a fixed number of collisions in each turn: the load
+of the machine changes less within a second than between two runs. Prints the median and the
+quartiles of the ratios of successive turns.
 """
 
 import argparse
@@ -17,18 +17,18 @@ from pathlib import Path
 
 from benchmarks.scenes import CASES
 
-HERE = Path(__file__).parent.parent
+ROOT = Path(__file__).parent.parent
 NUMBERS, CASE = (10_000, 100_000), CASES[1].title
-TURN, TURNS = 100_000, 30  # collisions in a turn; turns of each
+COLLISIONS_PER_TURN, DEFAULT_TURNS = 100_000, 30
 
 
 def main() -> None:
-    """Print a line for each number of particles."""
+    """Print a row of the table for each number of particles."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("other", type=Path, help="a checkout of another commit")
     parser.add_argument("--case", default=CASE, choices=[case.title for case in CASES])
     parser.add_argument("--numbers", type=int, nargs="+", default=NUMBERS)
-    parser.add_argument("--turns", type=int, default=TURNS)
+    parser.add_argument("--turns", type=int, default=DEFAULT_TURNS)
     options = parser.parse_args()
     if not (options.other / "benchmarks").is_dir():
         parser.error(f"{options.other} is not a checkout")
@@ -36,17 +36,17 @@ def main() -> None:
         parser.error(f"--turns = {options.turns}: must be 2 at least, for quartiles")
     print("| particles | ratio | quartiles | collisions/s | of the other |\n|" + " --- |" * 5)
     for number in options.numbers:
-        arguments = options.case, number, TURN
-        with runner(HERE, *arguments) as ours, runner(options.other, *arguments) as theirs:
+        arguments = options.case, number, COLLISIONS_PER_TURN
+        with runner(ROOT, *arguments) as ours, runner(options.other, *arguments) as theirs:
             turns = [(turn(ours), turn(theirs)) for _ in range(options.turns)]
         low, ratio, high = statistics.quantiles([a / b for a, b in turns], n=4)
-        here, there = (statistics.median(column) for column in zip(*turns, strict=True))
-        line = f"{number:,} | {ratio:.2f} | {low:.2f} to {high:.2f} | {here:.3g} | {there:.3g}"
+        rate, other_rate = (statistics.median(column) for column in zip(*turns, strict=True))
+        line = f"{number:,} | {ratio:.2f} | {low:.2f} to {high:.2f} | {rate:.3g} | {other_rate:.3g}"
         print(f"| {line} |", flush=True)
 
 
 def runner(checkout: Path, *arguments: object) -> subprocess.Popen[str]:
-    """A process that runs the kernel of a checkout, a turn at a time."""
+    """Return a process that runs the kernel of a checkout, a turn for each line of input."""
     code = f"{inspect.getsource(run)}\nrun{arguments}"
     pipe = subprocess.PIPE
     return subprocess.Popen(
@@ -55,16 +55,16 @@ def runner(checkout: Path, *arguments: object) -> subprocess.Popen[str]:
 
 
 def turn(process: subprocess.Popen[str]) -> float:
-    """Collisions a second of CPU time in the next turn."""
+    """Run the next turn; return its collisions per second of CPU time."""
     print(file=process.stdin, flush=True)
-    told = process.stdout.readline()
-    if not told:
+    line = process.stdout.readline()
+    if not line:
         raise SystemExit("a kernel has ended early: see above")
-    return float(told)
+    return float(line)
 
 
 def run(case: str, number: int, collisions: int) -> None:
-    """Run the kernel of the checkout that is the current folder: a turn for each line of input."""
+    """Run the kernel of the checkout in the current folder: a turn for each line of input."""
     import sys
     import time
 
@@ -72,8 +72,8 @@ def run(case: str, number: int, collisions: int) -> None:
     from benchmarks.kernel import warm_up
     from benchmarks.scenes import CASES, advance, steady
 
-    (chosen,) = [one for one in CASES if one.title == case]
-    scene, state = steady(chosen, number)
+    (selected,) = [candidate for candidate in CASES if candidate.title == case]
+    scene, state = steady(selected, number)
     warm_up(scene, state)
     for _ in sys.stdin:
         begin = time.process_time()

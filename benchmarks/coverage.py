@@ -1,13 +1,13 @@
-"""Coverage of trusted intervals of R, by this checkout and by another one: are verdicts right?
+"""Coverage of trusted intervals of R, in this checkout and in another one: are verdicts right?
 
     git worktree add ../before COMMIT
     python -m benchmarks.coverage ../before [--jobs 2] [--scenes "bed, N=40"] [--only theirs]
 
-Each checkout simulates the scenes of coverage.yaml in processes of its own, with the same settings
-and seeds. Among the runs that it calls trusted (`R_ci95_trusted` is 1), and among those that met
+Each checkout simulates the scenes of coverage.yaml in separate processes, with the same settings
+and seeds. Among runs called trusted (`R_ci95_trusted` is 1), and among runs that met
 their target (`target_met` is 1), the interval R ± `R_ci95` should hold the truth in 95 %: a verdict
-must not select lucky runs. A folder keeps the runs, and a second call simulates only the missing
-ones. Prints tables, which --document writes into docs/accuracy.md. --pilot prints memories and
+must not select lucky runs. The runs are stored in a folder, and a second call simulates only those
+missing. Prints tables, which --document writes into docs/trust.md. --pilot prints memories and
 target errors for the scenes of coverage.yaml.
 """
 
@@ -39,10 +39,10 @@ from benchmarks.coverage_tables import (
     tables_of,
     truth_of,
 )
-from roughgas.simulation.recorder import KEY
+from roughgas.simulation.error_target import TARGET_KEY
 
-HERE = Path(__file__).parent.parent
-PLAN, PAGE = Path(__file__).with_suffix(".yaml"), HERE / "docs" / "accuracy.md"
+ROOT = Path(__file__).parent.parent
+PLAN, PAGE = Path(__file__).with_suffix(".yaml"), ROOT / "docs" / "trust.md"
 BEGIN, END = "<!-- coverage: made by benchmarks/coverage.py -->\n", "<!-- until here -->\n"
 TRUTH, LENGTH, TARGET, PILOT = "truth", "length", "target", "pilot"
 SETTINGS = ("particles", "box", "effects", "species")
@@ -50,7 +50,7 @@ TARGET_LENGTH = 25  # memories of a run whose error is the target
 
 
 class Task(NamedTuple):
-    """Runs of a scene with one schedule, such as those of 20 memories: `length` and 20."""
+    """Runs of a scene with the same schedule, for instance of 20 memories: kind `length`, 20."""
 
     scene: str
     kind: str
@@ -62,12 +62,12 @@ class Task(NamedTuple):
 
     @property
     def path(self) -> Path:
-        """Path of the file of its runs, in the folder of a checkout."""
+        """Path of the file of the runs, in the folder of a checkout."""
         words = "".join(c if c.isalnum() or c in "-=." else "_" for c in self.scene)
         return Path(words) / f"{self.kind}_{self.number:g}.json"
 
     def record(self) -> dict[str, Any]:
-        """Return the task as JSON has it."""
+        """Return the task as it is read back from JSON."""
         return json.loads(json.dumps(self._asdict()))
 
 
@@ -78,7 +78,7 @@ def tasks_of(name: str, plan: Mapping[str, Any]) -> list[Task]:
     """Return the tasks of a scene: the truth, runs of each length, and runs to the target."""
     scene = plan["scenes"][name]
     seeds, truth = scene.get("seeds", plan["seeds"]), scene.get("truth", plan["truth"])
-    target = {KEY: scene["target_stderr"]}
+    target = {TARGET_KEY: scene["target_stderr"]}
     lengths = plan["lengths" + gravity_suffix(scene)]
     return [
         task_of(plan, name, TRUTH, truth["memories"], truth["seeds"]),
@@ -95,7 +95,7 @@ def task_of(
     seeds: int,
     target: Mapping[str, float] | None = None,
 ) -> Task:
-    """Return a task, its measurement of whole periods, with seeds that no other task has."""
+    """Return a task with a measurement of whole periods, and with unique seeds."""
     scene = plan["scenes"][name]
     schedule, memory = scene["schedule"], 1.0 if kind == PILOT else scene["memory"]
     unit = schedule.get("period", schedule["sample_every"])
@@ -103,13 +103,13 @@ def task_of(
     settings = {key: scene[key] for key in SETTINGS if key in scene}
     settings["schedule"] = {"kind": "steady", **schedule, "measure": measure, **(target or {})}
     key = zlib.crc32(f"{name} {kind} {number:g}".encode())
-    drawn = np.random.SeedSequence([plan["seed"], key]).generate_state(seeds, "u8") >> 1
+    seed_words = np.random.SeedSequence([plan["seed"], key]).generate_state(seeds, "u8") >> 1
     r, beta = float(scene["r"]), float(scene["beta"])
-    return Task(name, kind, number, settings, r, beta, drawn.tolist())
+    return Task(name, kind, number, settings, r, beta, seed_words.tolist())
 
 
 def gravity_suffix(scene: Mapping[str, Any]) -> str:
-    """Return the ending of the plan's keys that apply to a scene."""
+    """Return the suffix of the plan's keys for a scene: scenes with gravity have their keys."""
     return "_under_gravity" if "gravity" in scene["effects"] else ""
 
 
@@ -117,20 +117,20 @@ def gravity_suffix(scene: Mapping[str, Any]) -> str:
 
 
 def measure() -> None:
-    """Simulate the tasks that are lines of input, in the checkout that is the current folder."""
+    """Simulate the tasks in the lines of input, in the checkout in the current folder."""
     import json
     import sys
     import time
 
+    from roughgas.config import experiment_of
     from roughgas.scene import build
     from roughgas.simulation.point import run_point
-    from roughgas.simulation.points import settings_of
 
     names = ["R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted", "equilibrated", "measured_from"]
     names += ["target_met", "target_blocks", "autocorrelation_time", "memory_of_R", "collisions"]
     for line in sys.stdin:
         task = json.loads(line)
-        settings = settings_of(None, task["settings"], "paper", None)
+        _, _, settings = experiment_of(None, task["settings"])
         scene, begin = build(settings, task["r"], task["beta"]), time.process_time()
         points = [run_point(scene, settings, seed).variables for seed in task["seeds"]]
         runs = {name: [float(point.get(name, "nan")) for point in points] for name in names}
@@ -143,7 +143,7 @@ PROGRAM = f"{inspect.getsource(measure)}\nmeasure()"
 
 
 class Checkout(NamedTuple):
-    """A checkout, ours or theirs, and the folder of the runs of both."""
+    """A checkout, ours or theirs, and the folder with the runs of both."""
 
     side: str
     path: Path
@@ -154,7 +154,7 @@ class Checkout(NamedTuple):
         return self.folder / (TRUTH if task.kind == TRUTH else self.side) / task.path
 
     def stored(self, task: Task) -> dict[str, Any]:
-        """Return the content of the file of a task; empty without one of this task."""
+        """Return the content of the file of a task; empty if there is none, or of another task."""
         path = self.file(task)
         content = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         return content if content.get("task") == task.record() else {}
@@ -173,16 +173,17 @@ class Checkout(NamedTuple):
         return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
     def missing(self, tasks: Sequence[Task]) -> list[Task]:
-        """Return the tasks without runs by these sources; R of the truth depends on none."""
+        """Return the tasks without stored runs by the present sources; for the truth any sources
+        will do."""
         sources, stored = self.sources(), [self.stored(task) for task in tasks]
-        present = [
+        stored_flags = [
             bool(content) and (task.kind == TRUTH or content["sources"] == sources)
             for task, content in zip(tasks, stored, strict=True)
         ]
-        return [task for task, kept in zip(tasks, present, strict=True) if not kept]
+        return [task for task, is_stored in zip(tasks, stored_flags, strict=True) if not is_stored]
 
     def simulate(self, tasks: Sequence[Task], report: Callable[[str], None]) -> None:
-        """Simulate the missing ones of the tasks, one after the other, in a process."""
+        """Simulate the missing tasks, one after the other, in a process."""
         sources, missing = self.sources(), self.missing(tasks)
         if not missing:
             return
@@ -207,7 +208,7 @@ class Checkout(NamedTuple):
 
 
 def _write(path: Path, text: str) -> None:
-    """Write a file as a whole or not at all."""
+    """Write a file atomically."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_suffix(".unfinished")
     unfinished.write_text(text, encoding="utf-8")
@@ -215,7 +216,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def simulate(checkouts: Sequence[Checkout], tasks: Mapping[str, Sequence[Task]], jobs: int) -> None:
-    """Simulate the tasks of each scene in each checkout, in `jobs` processes at a time."""
+    """Simulate the tasks of all scenes in all checkouts, in `jobs` parallel processes."""
     missing = [len(checkout.missing(scene)) for checkout in checkouts for scene in tasks.values()]
     numbers = itertools.count(1)
 
@@ -223,14 +224,14 @@ def simulate(checkouts: Sequence[Checkout], tasks: Mapping[str, Sequence[Task]],
         print(f"[{next(numbers)}/{sum(missing)}] {words}", file=sys.stderr, flush=True)
 
     with ThreadPoolExecutor(jobs) as pool:
-        for checkout in checkouts:  # in turn: the second finds the truth
+        for checkout in checkouts:  # one after the other: the second reuses the truth
             list(pool.map(checkout.simulate, tasks.values(), itertools.repeat(report)))
 
 
 def scenes_of(
     checkout: Checkout, tasks: Mapping[str, Sequence[Task]], plan: Mapping[str, Any]
 ) -> dict[str, Scene]:
-    """Return the scenes by name whose truth, and some runs besides, the folder holds."""
+    """Return the scenes, by name, with a truth and with some runs in the folder."""
     scenes = {}
     for name, scene_tasks in tasks.items():
         kinds: dict[str, list[Runs]] = {TRUTH: [], LENGTH: [], TARGET: []}
@@ -239,9 +240,11 @@ def scenes_of(
                 kinds[task.kind].append(runs)
         if kinds[TRUTH] and (kinds[LENGTH] or kinds[TARGET]):
             settings = plan["scenes"][name]
-            least = plan["criteria"]["memories" + gravity_suffix(settings)]
+            min_memories = plan["criteria"]["memories" + gravity_suffix(settings)]
             truth = truth_of(*kinds[TRUTH])
-            scenes[name] = Scene(settings["memory"], least, truth, kinds[LENGTH], kinds[TARGET])
+            scenes[name] = Scene(
+                settings["memory"], min_memories, truth, kinds[LENGTH], kinds[TARGET]
+            )
     return scenes
 
 
@@ -252,7 +255,7 @@ def main() -> None:
     """Simulate the missing runs, and print the tables."""
     plan = yaml.safe_load(PLAN.read_text(encoding="utf-8"))
     options = arguments(list(plan["scenes"]))
-    paths = {THEIRS: options.other.resolve(), OURS: HERE}
+    paths = {THEIRS: options.other.resolve(), OURS: ROOT}
     checkouts = {
         side: Checkout(side, path, options.folder.resolve()) for side, path in paths.items()
     }
@@ -276,12 +279,12 @@ def arguments(scenes: list[str]) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("other", type=Path, help="a checkout of another commit")
-    parser.add_argument("--folder", type=Path, default=HERE / "results" / "verdicts")
+    parser.add_argument("--folder", type=Path, default=ROOT / "results" / "verdicts")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time")
     parser.add_argument("--scenes", nargs="+", choices=scenes, default=scenes, metavar="SCENE")
     parser.add_argument("--only", choices=(OURS, THEIRS), help="simulate in one checkout only")
     parser.add_argument("--table", action="store_true", help="simulate nothing")
-    parser.add_argument("--document", action="store_true", help="write into docs/accuracy.md")
+    parser.add_argument("--document", action="store_true", help="write into docs/trust.md")
     parser.add_argument("--pilot", action="store_true", help="one long run of each scene instead")
     options = parser.parse_args()
     if not (options.other / "src" / "roughgas").is_dir():
@@ -294,7 +297,7 @@ def arguments(scenes: list[str]) -> argparse.Namespace:
 def warn_of_other_sources(
     checkouts: Mapping[str, Checkout], tasks: Mapping[str, Sequence[Task]]
 ) -> None:
-    """Warn of runs in the tables that the present sources of a checkout did not make."""
+    """Warn of runs in the tables that are by other sources than a checkout has now."""
     for side, checkout in checkouts.items():
         stale = [task for scene in tasks.values() for task in checkout.missing(scene)]
         if number := sum(bool(checkout.stored(task)) for task in stale):
@@ -313,10 +316,10 @@ def print_pilot(checkout: Checkout, task: Task) -> None:
 
 
 def document(text: str) -> None:
-    """Write the tables between their marks in docs/accuracy.md."""
-    before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
-    _, after = rest.split(END)
-    PAGE.write_text(before + BEGIN + text + END + after, encoding="utf-8")
+    """Write the tables into docs/trust.md, between the two marks."""
+    text_before, remainder = PAGE.read_text(encoding="utf-8").split(BEGIN)
+    _, text_after = remainder.split(END)
+    PAGE.write_text(text_before + BEGIN + text + END + text_after, encoding="utf-8")
 
 
 if __name__ == "__main__":

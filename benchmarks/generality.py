@@ -1,9 +1,9 @@
-"""What it costs that the kernel can do more than one scene: it beside a program that cannot.
+"""Cost of the generality of the kernel: its speed relative to a program for a single scene.
 
     python -m benchmarks.generality
 
-Both make the same collisions of the same gas, bit by bit and in turns, so that what else the
-machine does is about the same for either.
+Both compute the same collisions of the same gas, with the same bits. They run in turns, so that the
+load of the machine is about the same for both.
 """
 
 import functools
@@ -20,45 +20,48 @@ from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 
-# Rough and elastic: spins turn, and the gas stays as hot and as dense everywhere
+# Rough and elastic: spins change, but temperature and density stay homogeneous
 CASES = (Case("packing 0.05", "cooling", 1.0, 1.0), Case("packing 0.2", "cooling", 1.0, 1.0, 0.5))
 NUMBERS = (40, 160)
 WARM_UP = 100  # collisions per particle
-LENGTH = 400_000  # collisions that are timed in a run
+COLLISIONS_PER_RUN = 400_000
 RUNS = 7
 
 EXPLANATION = f"""
 The kernel takes scenes of any composition. `benchmarks/handwritten.py` is its algorithm written by
 hand for one scene alone, a gas of rough disks in a periodic box, and makes the same collisions to
 the last bit. CPU time of the kernel over that of the program by hand, medians of {RUNS}
-runs in turns of {LENGTH:,} collisions, with the lowest and the highest: 1 is no cost at
+runs in turns of {COLLISIONS_PER_RUN:,} collisions, with the lowest and the highest: 1 is no cost at
 all, below 1 the kernel is the faster one. The kernel always keeps an account of the energy that
 collisions dissipate; by hand it can be left out. The gases are elastic and perfectly rough.
 """.strip()
 
 
 class Comparison(NamedTuple):
-    """Seconds of CPU that each program takes for the same collisions, run by run."""
+    """Seconds of CPU time of each program for the same collisions, run by run."""
 
     case: Case
     number: int
     kernel: list[float]
     by_hand: list[float]
-    without_books: list[float]  # by hand, and without the energy account of the collisions
+    without_account: list[float]  # by hand, without the account of the energy of collisions
 
 
 def rate(seconds: list[float]) -> float:
-    """Collisions per second in the median run."""
-    return LENGTH / statistics.median(seconds)
+    """Return the collisions per second in the median run."""
+    return COLLISIONS_PER_RUN / statistics.median(seconds)
 
 
-def ratios(seconds: list[float], beside: list[float]) -> list[float]:
-    """Of runs that followed each other, in ascending order."""
-    return sorted(a / b for a, b in zip(seconds, beside, strict=True))
+def ratios(seconds: list[float], reference: list[float]) -> list[float]:
+    """Return the ratios of the times of successive runs, in ascending order."""
+    return sorted(a / b for a, b in zip(seconds, reference, strict=True))
 
 
 def measure(case: Case, number: int, runs: int = RUNS) -> Comparison:
-    """Run the three in turns, so many times; RuntimeError where their results differ by a bit."""
+    """Run the three programs in turns, `runs` times, and return their times.
+
+    Raises RuntimeError if their results are not bit-identical.
+    """
     scene, state, gases = same_gas(settings(case, number), case.r, case.beta)
     programs = [functools.partial(run_kernel, scene, state)]
     programs += [functools.partial(handwritten.run, gas) for gas in gases]
@@ -67,35 +70,37 @@ def measure(case: Case, number: int, runs: int = RUNS) -> Comparison:
         program(target)  # compiles
     seconds = [], [], []
     for run in range(runs):
-        target += LENGTH
-        for k in range(len(programs)):
-            which = (run + k) % len(programs)  # none is always the first
+        target += COLLISIONS_PER_RUN
+        for position in range(len(programs)):
+            turn = (run + position) % len(programs)  # each program is the first in some runs
             begin = time.process_time()
-            programs[which](target)
-            seconds[which].append(time.process_time() - begin)
+            programs[turn](target)
+            seconds[turn].append(time.process_time() - begin)
     if not all(agree(state, gas) for gas in gases):
         raise RuntimeError(f"{case.title}, N = {number}: the programs disagree")
     return Comparison(case, number, *seconds)
 
 
 def same_gas(experiment, r: float, beta: float):
-    """(scene, state) of the kernel, and the same by hand, with and without energy account."""
+    """Return scene and state of a gas for the kernel, and the gas for the program by hand, with and
+    without an energy account."""
     scene = build(experiment, r, beta)
     state = initial_state(scene, experiment, np.random.default_rng(1))
     start = state.trajectory, state.spin, scene.box, r, beta, scene.effects.spin.inertia
-    return scene, state, [handwritten.gas(*start, books) for books in (True, False)]
+    return scene, state, [handwritten.gas(*start, has_account) for has_account in (True, False)]
 
 
 def run_kernel(scene, state, target: int) -> None:
-    """Until so many collisions have been made in all; `advance` waits only so long for them."""
+    """Run the kernel until `target` collisions in total; a call of `advance` may stop earlier."""
     while state.counts[COLLISIONS] < target:
         advance(scene, state, collisions=int(target - state.counts[COLLISIONS]))
 
 
 def agree(state, gas) -> bool:
-    """Whether after as many collisions all paths and spins are the same, to the last bit."""
+    """Return whether both have made the same number of collisions, with bit-identical paths and
+    spins."""
     return (
-        state.counts[COLLISIONS] == gas.counts[handwritten.MADE]
+        state.counts[COLLISIONS] == gas.counts[handwritten.COLLISIONS_MADE]
         and np.array_equal(state.trajectory, gas.path)
         and np.array_equal(state.spin[:, 0], gas.spin)
         and np.array_equal(state.changes, gas.changes)
@@ -103,18 +108,21 @@ def agree(state, gas) -> bool:
 
 
 def table(comparisons: Sequence[Comparison]) -> str:
-    """One row a scene and size."""
-    heads = ["gas", "N", "kernel, collisions/s", "by hand", "time, kernel / by hand"]
-    heads += ["lowest", "highest", "the same without account", "lowest", "highest"]
+    """Return a table with a row for each scene and number of particles."""
+    head = ["gas", "N", "kernel, collisions/s", "by hand", "time, kernel / by hand"]
+    head += ["lowest", "highest", "the same without account", "lowest", "highest"]
     rows = []
-    for one in comparisons:
-        row = [one.case.title, f"{one.number:,}"]
-        row += [tables.short(rate(seconds)) for seconds in (one.kernel, one.by_hand)]
-        for beside in (one.by_hand, one.without_books):
-            found = ratios(one.kernel, beside)
-            row += [f"{x:.3f}" for x in (statistics.median(found), found[0], found[-1])]
+    for comparison in comparisons:
+        row = [comparison.case.title, f"{comparison.number:,}"]
+        row += [tables.short(rate(seconds)) for seconds in (comparison.kernel, comparison.by_hand)]
+        for reference in (comparison.by_hand, comparison.without_account):
+            sorted_ratios = ratios(comparison.kernel, reference)
+            row += [
+                f"{x:.3f}"
+                for x in (statistics.median(sorted_ratios), sorted_ratios[0], sorted_ratios[-1])
+            ]
         rows.append(row)
-    return tables.table(heads, rows)
+    return tables.table(head, rows)
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""How fast the kernel is: each scene at each number of particles, on one core, in CPU time."""
+"""Speed of the kernel: each scene at each number of particles, on one core, in CPU time."""
 
 import math
 import time
@@ -14,25 +14,25 @@ from roughgas.kernel.state import (
     NOW,
     PREDICTIONS,
     SPAN,
-    STALE,
+    STALE_PREDICTIONS,
     State,
 )
 
 NUMBERS = (40, 160, 1_000, 10_000, 100_000, 1_000_000)
-WARM_UP = 5.0  # collisions per particle after a large box was made of small ones
-SPANS = 1000  # that a run takes at most
-LONGEST = 20.0  # seconds, of the warm-up and, about, of what is timed
-LEAST = 1_500_000  # collisions that are timed
+WARM_UP = 5.0  # collisions per particle in a large box made of copies of a small one
+MAX_SPANS = 1000  # of a run
+MAX_TIME = 20.0  # s, of the warm-up, and approximately of all runs
+MIN_COLLISIONS = 1_500_000  # in all runs
 RUNS = 5
 
 
 class Counts(NamedTuple):
-    """Events of each kind."""
+    """Numbers of events of each kind."""
 
     collisions: int  # of two particles
     hits: int  # of a particle and a boundary
-    renewals: int  # a particle's future is foreseen anew: it leaves its cell, a horizon, a stroke
-    stale: int  # a foreseen collision whose partner has gone another way
+    renewals: int  # new predictions for a particle: it leaves its cell, a horizon, a stroke
+    stale: int  # predicted collisions whose partner has changed its path
 
 
 class Memory(NamedTuple):
@@ -40,11 +40,11 @@ class Memory(NamedTuple):
 
     particles: float  # state and queue
     cells: float  # the cells' own lists
-    workspace: float  # of fixed size, or about the sweep
+    workspace: float  # of fixed size, and of the sweep
 
 
 class Timing(NamedTuple):
-    """What was measured of one scene at one size."""
+    """Measurements of a scene at a number of particles."""
 
     case: Case
     number: int
@@ -75,63 +75,70 @@ class Timing(NamedTuple):
         return sum(self.counts) / sum(self.seconds)
 
 
-def measure(case: Case, number: int, runs: int = RUNS, least: int = LEAST) -> Timing:
-    """Time a scene over a whole number of spans, after each of which particles are sorted anew, or
+def measure(
+    case: Case, number: int, runs: int = RUNS, min_collisions: int = MIN_COLLISIONS
+) -> Timing:
+    """Time a scene over a whole number of spans, the intervals between sortings of particles, or
     over less if that would take too long."""
     scene, state = steady(case, number)
     warm_up(scene, state)
-    before = counts_of(state)
-    rate = before.collisions / (state.clock[BASE] + state.clock[NOW])
-    spans = min(math.ceil(least / (rate * state.clock[SPAN])), runs * SPANS)
+    counts_before = counts_of(state)
+    rate = counts_before.collisions / (state.clock[BASE] + state.clock[NOW])
+    spans = min(math.ceil(min_collisions / (rate * state.clock[SPAN])), runs * MAX_SPANS)
     seconds, collisions = [], []
     for _ in range(runs):
-        begin, made = time.process_time(), state.counts[COLLISIONS]
+        begin, collisions_before = time.process_time(), state.counts[COLLISIONS]
         advance(scene, state, time=spans * state.clock[SPAN] / runs)
         seconds.append(time.process_time() - begin)
-        collisions.append(int(state.counts[COLLISIONS] - made))
-        if len(seconds) > 1 and sum(seconds) > LONGEST:
+        collisions.append(int(state.counts[COLLISIONS] - collisions_before))
+        if len(seconds) > 1 and sum(seconds) > MAX_TIME:
             break
-    counts = Counts(*np.subtract(counts_of(state), before).tolist())
+    counts = Counts(*np.subtract(counts_of(state), counts_before).tolist())
     return Timing(case, number, seconds, collisions, counts, memory_of(state))
 
 
 def warm_up(scene, state) -> None:
-    """WARM_UP collisions a particle, or fewer if these would take too long."""
+    """Make WARM_UP collisions per particle, or fewer if these would take too long."""
     number = len(state.label)
     advance(scene, state, collisions=1)  # compiles
     begin = time.process_time()
     while state.counts[COLLISIONS] < WARM_UP * number / 2:
         advance(scene, state, collisions=max(1, number // 8))
-        if time.process_time() - begin > LONGEST:
+        if time.process_time() - begin > MAX_TIME:
             break
 
 
 def counts_of(state: State) -> Counts:
-    """What has happened so far. Two predictions belong to a collision, one to all else but stale
-    entries, which need none."""
-    made, hits, predictions, stale = state.counts[[COLLISIONS, BOUNDARY_HITS, PREDICTIONS, STALE]]
-    return Counts(int(made), int(hits), int(predictions - 2 * made - hits), int(stale))
+    """Return the numbers of events since the start.
+
+    A collision needs two predictions, a hit or a renewal one, a stale entry none.
+    """
+    collisions, hits, predictions, stale = state.counts[
+        [COLLISIONS, BOUNDARY_HITS, PREDICTIONS, STALE_PREDICTIONS]
+    ]
+    return Counts(int(collisions), int(hits), int(predictions - 2 * collisions - hits), int(stale))
 
 
 def memory_of(state: State) -> Memory:
-    """What the arrays of a state take."""
+    """Return the memory of the arrays of a state."""
     number = len(state.label)
     cells = 0 if state.cells is None else state.cells.first.nbytes
-    workspace = owned((state.shortlist, state.sweep))
-    particles = owned(state) - cells - workspace
+    workspace = nbytes_of((state.shortlist, state.sweep))
+    particles = nbytes_of(state) - cells - workspace
     return Memory(particles / number, cells / number, workspace / number)
 
 
-def owned(part) -> int:
-    """Bytes in the arrays of nested tuples, counting memory that two of them share once."""
+def nbytes_of(nested) -> int:
+    """Return the bytes of the arrays in nested tuples, counting shared memory once."""
     arrays = {}
-    _gather(part, arrays)
+    _gather(nested, arrays)
     return sum(arrays.values())
 
 
-def _gather(part, arrays):
-    if isinstance(part, np.ndarray):
-        arrays[part.ctypes.data] = part.nbytes
-    elif isinstance(part, tuple):
-        for one in part:
-            _gather(one, arrays)
+def _gather(nested, arrays):
+    """Add the bytes of each array in nested tuples to `arrays`, by address."""
+    if isinstance(nested, np.ndarray):
+        arrays[nested.ctypes.data] = nested.nbytes
+    elif isinstance(nested, tuple):
+        for member in nested:
+            _gather(member, arrays)

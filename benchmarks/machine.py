@@ -1,4 +1,4 @@
-"""The machine that was measured, and what was measured on it."""
+"""Description of the machine: processor, memory, versions, and commit."""
 
 import datetime
 import os
@@ -14,12 +14,12 @@ PACKAGES = ("numba", "llvmlite", "numpy")
 
 
 def description() -> dict[str, str]:
-    """What to know about the machine, by name, with the commit and the date."""
+    """Return the known properties of the machine by name, with versions, commit and date."""
     from llvmlite import binding
 
     memory = _field("/proc/meminfo", "MemTotal")
     versions = (f"{name} {metadata.version(name)}" for name in PACKAGES)
-    known = {
+    properties = {
         "processor": _field("/proc/cpuinfo", "model name"),
         "instruction set": os.environ.get("NUMBA_CPU_NAME") or binding.get_host_cpu_name(),
         "cores": str(os.cpu_count()),
@@ -31,7 +31,7 @@ def description() -> dict[str, str]:
         "commit": _commit(),
         "date": datetime.date.today().isoformat(),
     }
-    return {name: value for name, value in known.items() if value}
+    return {name: value for name, value in properties.items() if value}
 
 
 def _field(path: str, name: str) -> str:
@@ -45,18 +45,18 @@ def _field(path: str, name: str) -> str:
 
 
 def _caches() -> str:
-    """Return such as `L1 32K data, L2 1024K unified, L3 32768K unified`."""
-    files = ("level", "size", "type")
-    found = [
-        [(folder / name).read_text(encoding="utf-8").strip() for name in files]
+    """Return the data caches, such as `L1 32K data, L2 1024K unified, L3 32768K unified`."""
+    fields = ("level", "size", "type")
+    caches = [
+        [(folder / name).read_text(encoding="utf-8").strip() for name in fields]
         for folder in sorted(CACHES.glob("index*"))
     ]
-    data = (cache for cache in found if cache[2] != "Instruction")
-    return ", ".join(f"L{level} {size} {kind.lower()}" for level, size, kind in data)
+    data = (cache for cache in caches if cache[2] != "Instruction")
+    return ", ".join(f"L{level} {size} {cache_type.lower()}" for level, size, cache_type in data)
 
 
 def _commit():
-    """The commit that is checked out, and whether more has changed since."""
+    """Return the present commit, with `-dirty` if there are uncommitted changes."""
     command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    return done.stdout.strip()
+    process = subprocess.run(command, capture_output=True, text=True)
+    return process.stdout.strip()

@@ -1,4 +1,4 @@
-"""One page and one summary for each processor that was measured, and the table of all of them."""
+"""Pages and summaries of measurements by processor, and the table of all processors."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from benchmarks.tables import short, table
 from benchmarks.yardstick import REFERENCE, Rate
 from roughgas.base.files import write_text
 
-ALL = """
+PAGE_TEMPLATE = """
 # Benchmarks
 
 How many times as many collisions a second the kernel makes as the plain loop
@@ -40,47 +40,53 @@ def name_of(machine: Mapping[str, str]) -> str:
 
 def plain_rate(yardstick: Sequence[Rate]) -> float:
     """Return the plain loop's collisions per second with REFERENCE particles; NaN if unknown."""
-    return next((one.median for one in yardstick if one.number == REFERENCE), float("nan"))
+    return next((rate.median for rate in yardstick if rate.number == REFERENCE), float("nan"))
 
 
 def summary(
     machine: Mapping[str, str], timings: Sequence[Timing], yardstick: Sequence[Rate]
 ) -> dict[str, Any]:
-    """Return what the table of all machines needs of one: multiples by scene and number."""
+    """Return the summary of a machine: its description, the rate of the plain loop, and multiples
+    of it by the kernel, by scene and number of particles."""
     plain, multiples = plain_rate(yardstick), {}
-    for one in timings:
-        multiples.setdefault(one.case.title, {})[str(one.number)] = round(one.rate / plain, 1)
+    for timing in timings:
+        multiples.setdefault(timing.case.title, {})[str(timing.number)] = round(
+            timing.rate / plain, 1
+        )
     return {"machine": dict(machine), "plain": round(plain), "multiples": multiples}
 
 
-def write(folder: Path, name: str, page: str, found: Mapping[str, Any]) -> None:
-    """Write the page and the summary of one machine, and the table of all of them."""
-    here = folder / "benchmarks"
-    write_text(here / f"{name}.json", json.dumps(found, indent=2) + "\n")
-    write_text(here / f"{name}.md", page)
-    all_found = {path.stem: json.loads(path.read_text()) for path in sorted(here.glob("*.json"))}
-    write_text(folder / "benchmarks.md", overview(all_found))
+def write(folder: Path, name: str, page: str, machine_summary: Mapping[str, Any]) -> None:
+    """Write the page and the summary of a machine, and the table of all machines."""
+    pages_folder = folder / "benchmarks"
+    write_text(pages_folder / f"{name}.json", json.dumps(machine_summary, indent=2) + "\n")
+    write_text(pages_folder / f"{name}.md", page)
+    summaries = {
+        path.stem: json.loads(path.read_text()) for path in sorted(pages_folder.glob("*.json"))
+    }
+    write_text(folder / "benchmarks.md", overview(summaries))
 
 
-def overview(found: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the table of all machines, which are given as summaries by their names."""
-    heads = ["scene", "N", *(_title(one["machine"]) for one in found.values())]
+def overview(summaries: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the page with the table of all machines, from their summaries by name."""
+    head = ["scene", "N", *(_title(record["machine"]) for record in summaries.values())]
     rows: dict[tuple[str, str], dict[str, str]] = {}
-    for name, one in found.items():
-        for scene, by_number in one["multiples"].items():
+    for name, record in summaries.items():
+        for scene, by_number in record["multiples"].items():
             for number, multiple in by_number.items():
                 rows.setdefault((scene, number), {})[name] = f"{multiple:.1f}"
     cells = [
-        [scene, f"{int(number):,}", *(known.get(name, "") for name in found)]
-        for (scene, number), known in rows.items()
+        [scene, f"{int(number):,}", *(by_machine.get(name, "") for name in summaries)]
+        for (scene, number), by_machine in rows.items()
     ]
     pages = [
-        f"- [{_title(one['machine'])}](benchmarks/{name}.md): {short(one['plain'])} collisions/s "
-        f"by the plain loop; commit {one['machine']['commit']}, {one['machine']['date']}"
-        for name, one in found.items()
+        f"- [{_title(record['machine'])}](benchmarks/{name}.md): {short(record['plain'])}"
+        f" collisions/s by the plain loop; "
+        f"commit {record['machine']['commit']}, {record['machine']['date']}"
+        for name, record in summaries.items()
     ]
-    multiples = table(heads, cells)
-    return ALL.format(reference=REFERENCE, multiples=multiples, pages="\n".join(pages))
+    multiples = table(head, cells)
+    return PAGE_TEMPLATE.format(reference=REFERENCE, multiples=multiples, pages="\n".join(pages))
 
 
 def _title(machine):

@@ -1,12 +1,12 @@
-"""Which window each observable needs for errors that are right: misses of 95 % intervals.
+"""Window that each observable needs for correct errors, from misses of 95 % intervals.
 
     python -m benchmarks.observed [--seeds 80] [--jobs 2] [--scenes sheared bed]
 
 Runs four gases for WINDOWS e-folds of the slowest mode of their two temperatures, with all
-observables that apply. An element misses where its interval, by Student's t, does not hold the mean
-over all runs of the longest window. A kind is measured at the first window of CRITERIA from which
-on at most MOST of its trusted elements miss in each scene; trusted, but for the length of the
-window. Errors of shares are from the scatter over runs, since elements of a run are correlated.
+applicable observables. An element misses if its interval, by Student's t, does not contain the mean
+over all runs of the longest window. The window of an observable is the first of CRITERIA from where
+on at most a share MAX_MISSES of its trusted elements miss in each scene; trust by window length is
+switched off. Errors of shares are from the scatter over runs, as elements of a run are correlated.
 """
 
 import argparse
@@ -22,14 +22,14 @@ import numpy as np
 
 from benchmarks.tables import table as as_table
 from roughgas import simulate
-from roughgas.observables import KINDS
+from roughgas.observables import OBSERVABLES
 from roughgas.statistics.errors import YES, half_width
 
 WINDOWS, CRITERIA = (12, 24, 48, 96), (24, 48, 96)  # e-folds
-MOST = 0.08
-FEWEST = 20  # runs with trusted elements that a share is of
+MAX_MISSES = 0.08
+MIN_RUNS = 20  # with trusted elements, for a share
 SPIN = {"spin": {"inertia": 0.5}}
-ALL: dict[str, dict[str, Any]] = {
+OPEN_OBSERVABLES: dict[str, dict[str, Any]] = {
     "profiles": {"bins": 10},
     "cumulants": {},
     "histograms": {"bins": 16, "reach": 4.0},
@@ -38,13 +38,19 @@ ALL: dict[str, dict[str, Any]] = {
     "mean_square_displacement": {"lags": 5},
     "autocorrelation": {"delays": 10},
 }
-CLOSED = ALL | {"pair_correlation": {"bins": 4, "reach": 6.0}, "stress": {}}
-AT_REST = CLOSED | {"heat_flux": {}, "flux_autocorrelation": {"delays": 10}}
-ON_FLOOR = ALL | {"profiles": {"bins": 15, "height": 60.0}, "layer": {"phases": 16}}
+CLOSED_OBSERVABLES = OPEN_OBSERVABLES | {
+    "pair_correlation": {"bins": 4, "reach": 6.0},
+    "stress": {},
+}
+RESTING_OBSERVABLES = CLOSED_OBSERVABLES | {"heat_flux": {}, "flux_autocorrelation": {"delays": 10}}
+BED_OBSERVABLES = OPEN_OBSERVABLES | {
+    "profiles": {"bins": 15, "height": 60.0},
+    "layer": {"phases": 16},
+}
 
 
 class Case(NamedTuple):
-    """A gas, and how it is observed."""
+    """A gas, its schedule, and its observables."""
 
     relaxation: float  # T, e-fold of the slowest mode by theory: `slowest_relaxation` of long runs
     wait: float  # T
@@ -57,11 +63,11 @@ class Case(NamedTuple):
 
 CASES = {
     "sheared": Case(
-        *(22.5, 200.0, 1.0, CLOSED),
+        *(22.5, 200.0, 1.0, CLOSED_OBSERVABLES),
         {"particles": 40, "box": (25, 25), "effects": SPIN | {"shear": {"velocity": 2}}},
     ),
     "heated": Case(
-        *(5.8, 60.0, 1.04, AT_REST),
+        *(5.8, 60.0, 1.04, RESTING_OBSERVABLES),
         {
             "particles": 40,
             "box": (25, 25),
@@ -69,7 +75,7 @@ CASES = {
         },
     ),
     "bath": Case(
-        *(10.6, 100.0, 2.0, AT_REST),
+        *(10.6, 100.0, 2.0, RESTING_OBSERVABLES),
         {
             "particles": 20,
             "box": (20, 20),
@@ -78,7 +84,7 @@ CASES = {
         beta=-0.5,
     ),
     "bed": Case(
-        *(0.89, 50.0, 1 / 16, ON_FLOOR),
+        *(0.89, 50.0, 1 / 16, BED_OBSERVABLES),
         {
             "particles": 40,
             "box": (12.5, "open"),
@@ -93,26 +99,26 @@ CASES = {
 }
 
 
-class Values(NamedTuple):
-    """A variable of a run, flat."""
+class VariableValues(NamedTuple):
+    """Values of a variable in a run, flattened."""
 
     value: np.ndarray
     half: np.ndarray  # half width of the 95 % interval
-    trusted: np.ndarray  # but for the length of the window
+    trusted: np.ndarray  # by all criteria except the length of the window
 
 
 class Misses(NamedTuple):
-    """Of the elements of a kind in runs of a window."""
+    """Misses among the elements of a variable or observable, in runs of a window."""
 
-    trusted: float  # share
-    missed: float  # share of those that are trusted
-    error: float  # of this
-    of_all: float  # share of all that have an error
-    runs: int  # with trusted elements
+    trusted: float  # share of trusted elements
+    missed: float  # share of misses among trusted elements
+    error: float  # standard error of `missed`
+    missed_of_all: float  # share of misses among all elements with an error
+    runs: int  # number of runs with trusted elements
 
 
 def main() -> None:
-    """Print a table for each scene, and the window of each kind."""
+    """Print a table for each scene, and the window of each observable."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=80)
     parser.add_argument("--jobs", type=int, default=2)
@@ -120,54 +126,55 @@ def main() -> None:
     options = parser.parse_args()
     measurements = {}
     for scene in options.scenes:
-        measurements[scene] = measured(scene, range(1, options.seeds + 1), options.jobs)
+        measurements[scene] = misses_of_scene(scene, range(1, options.seeds + 1), options.jobs)
         print(f"{scene}\n\n{table(measurements[scene])}", flush=True)
-    for kind in KINDS:
+    for kind in OBSERVABLES:
         windows = window_of(kind, measurements.values())
         print(f"{kind}: {windows:g} e-folds" if windows < math.inf else f"{kind}: not known")
 
 
-def measured(scene: str, seeds: Iterable[int], jobs: int) -> dict[tuple[str, int], Misses]:
-    """Return the misses of each variable, and of each kind of observable, in each window."""
-    places = [(window, seed) for window in WINDOWS for seed in seeds]
+def misses_of_scene(scene: str, seeds: Iterable[int], jobs: int) -> dict[tuple[str, int], Misses]:
+    """Simulate a scene; return the misses of each variable and each observable in each window."""
+    window_seeds = [(window, seed) for window in WINDOWS for seed in seeds]
     with Pool(jobs) as pool:
-        runs = pool.starmap(partial(run, scene), places, chunksize=1)
-    return judged([window for window, _ in places], runs)
+        runs = pool.starmap(partial(run, scene), window_seeds, chunksize=1)
+    return misses_by_window([window for window, _ in window_seeds], runs)
 
 
-def judged(
-    windows: Iterable[int], runs: Iterable[dict[str, Values]]
+def misses_by_window(
+    windows: Iterable[int], runs: Iterable[dict[str, VariableValues]]
 ) -> dict[tuple[str, int], Misses]:
-    """Return the misses of each variable and each kind in runs of these windows."""
+    """Return the misses of each variable and each observable in runs of these windows."""
     by_window = defaultdict(list)
-    for window, entry in zip(windows, runs, strict=True):
-        by_window[window].append(entry)
-    last = by_window[WINDOWS[-1]]
+    for window, run in zip(windows, runs, strict=True):
+        by_window[window].append(run)
+    longest_runs = by_window[WINDOWS[-1]]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # no particle has been in a layer
+        warnings.simplefilter("ignore", RuntimeWarning)  # of layers without any particle
         truth = {
-            name: np.nanmean([entry[name].value for entry in last], axis=0) for name in last[0]
+            name: np.nanmean([run[name].value for run in longest_runs], axis=0)
+            for name in longest_runs[0]
         }
-    parts = {name: [name] for name in truth}
+    names_by_key = {name: [name] for name in truth}
     for name in truth:
-        parts.setdefault(name.partition(".")[0], []).append(name)
+        names_by_key.setdefault(name.partition(".")[0], []).append(name)
     return {
         (name, window): misses(measurements, names, truth)
         for window, measurements in by_window.items()
-        for name, names in parts.items()
+        for name, names in names_by_key.items()
     }
 
 
-def run(scene: str, window: int, seed: int) -> dict[str, Values]:
+def run(scene: str, window: int, seed: int) -> dict[str, VariableValues]:
     """Return the values of all observables in a run of `window` e-folds, by KIND.VARIABLE."""
-    for kind in KINDS.values():  # of all criteria but the length of the window
-        kind.relaxations, kind.beds, kind.doubtful = 0.0, True, ()
+    for kind in OBSERVABLES.values():  # switches off the criterion of the window's length
+        kind.relaxations, kind.valid_in_beds, kind.unvalidated = 0.0, True, ()
     case = CASES[scene]
-    whole = case.period or case.sample_every
+    time_step = case.period or case.sample_every
     schedule = {
         "kind": "steady",
         "equilibrate": case.wait,
-        "measure": math.ceil(window * case.relaxation / whole) * whole,
+        "measure": math.ceil(window * case.relaxation / time_step) * time_step,
         "sample_every": case.sample_every,
     } | ({"period": case.period} if case.period else {})
     point = simulate(
@@ -187,59 +194,70 @@ def run(scene: str, window: int, seed: int) -> dict[str, Values]:
 
 
 def _values(point, name):
-    parts = [point[f"{name}{end}"].values.ravel() for end in ("", "_stderr", "_dof", "_trusted")]
-    value, stderr, dof, trusted = parts
-    half = [half_width(*entry, 0.95) for entry in zip(stderr, dof, strict=True)]
-    return Values(value, np.array(half), trusted == YES)
+    columns = [point[f"{name}{end}"].values.ravel() for end in ("", "_stderr", "_dof", "_trusted")]
+    value, stderr, dof, trusted = columns
+    half_widths = [half_width(*pair, 0.95) for pair in zip(stderr, dof, strict=True)]
+    return VariableValues(value, np.array(half_widths), trusted == YES)
 
 
 def misses(
-    runs: list[dict[str, Values]], names: list[str], truth: Mapping[str, np.ndarray]
+    runs: list[dict[str, VariableValues]], names: list[str], truth: Mapping[str, np.ndarray]
 ) -> Misses:
-    """Return the misses of some variables in runs of one window."""
+    """Return the misses of some variables in runs of a window."""
     value, half, trusted = (
-        np.array([np.concatenate([getattr(entry[name], part) for name in names]) for entry in runs])
-        for part in Values._fields
+        np.array([np.concatenate([getattr(run[name], field) for name in names]) for run in runs])
+        for field in VariableValues._fields
     )
     expected = np.concatenate([truth[name] for name in names])
-    away = np.abs(value - expected) > half
-    known = (half > 0.0) & np.isfinite(expected)
-    trusted &= known
+    is_missed = np.abs(value - expected) > half
+    has_interval = (half > 0.0) & np.isfinite(expected)
+    trusted &= has_interval
     count = trusted.sum(axis=1)
     total = max(1, count.sum())
-    share = (away & trusted).sum() / total
-    scatter = ((away & trusted).sum(axis=1) - share * count).std() * math.sqrt(len(runs)) / total
-    of_all = (away & known).sum() / max(1, known.sum())
-    return Misses(total / trusted.size, share, scatter, of_all, int(np.count_nonzero(count)))
+    share = (is_missed & trusted).sum() / total
+    scatter = (
+        ((is_missed & trusted).sum(axis=1) - share * count).std() * math.sqrt(len(runs)) / total
+    )
+    missed_of_all = (is_missed & has_interval).sum() / max(1, has_interval.sum())
+    return Misses(total / trusted.size, share, scatter, missed_of_all, int(np.count_nonzero(count)))
 
 
 def table(measurements: Mapping[tuple[str, int], Misses]) -> str:
-    """Return a row for each variable: of each window the share trusted, and misses in per cent."""
+    """Return a table with a row for each variable: for each window, the share of trusted elements,
+    and misses in per cent."""
     names = sorted({name for name, _ in measurements})
     head = ["elements of", *(f"{window}: trusted, missed (all)" for window in WINDOWS)]
     rows = [[name, *(_cell(measurements[name, window]) for window in WINDOWS)] for name in names]
     return as_table(head, rows)
 
 
-def _cell(entry: Misses) -> str:
-    if not entry.runs:
-        return f"0 ({100 * entry.of_all:.1f})"
-    missed = f"{100 * entry.missed:.1f} ± {100 * entry.error:.1f}"
-    return f"{100 * entry.trusted:.0f} %, {missed} ({100 * entry.of_all:.1f})"
+def _cell(cell_misses: Misses) -> str:
+    if not cell_misses.runs:
+        return f"0 ({100 * cell_misses.missed_of_all:.1f})"
+    missed = f"{100 * cell_misses.missed:.1f} ± {100 * cell_misses.error:.1f}"
+    return f"{100 * cell_misses.trusted:.0f} %, {missed} ({100 * cell_misses.missed_of_all:.1f})"
 
 
 def window_of(kind: str, scenes: Iterable[Mapping[tuple[str, int], Misses]]) -> float:
-    """Return the e-folds from which on a kind misses at most MOST in each scene; infinite if none,
-    or if too few runs show it."""
-    needed = 0.0
+    """Return the window (e-folds) of an observable: from there on its misses are at most MAX_MISSES
+    in each scene; infinite without any, or with too few runs."""
+    longest = 0.0
     for measurements in scenes:
-        shown = {w: measurements[kind, w] for w in CRITERIA if (kind, w) in measurements}
-        good = [w for w, entry in shown.items() if entry.runs >= FEWEST and entry.missed <= MOST]
-        bad = [w for w, entry in shown.items() if entry.runs >= FEWEST and entry.missed > MOST]
-        if shown:
-            later = [w for w in good if w > max(bad, default=0)]
-            needed = max(needed, min(later, default=math.inf))
-    return needed or math.inf
+        by_window = {w: measurements[kind, w] for w in CRITERIA if (kind, w) in measurements}
+        passed = [
+            w
+            for w, run_misses in by_window.items()
+            if run_misses.runs >= MIN_RUNS and run_misses.missed <= MAX_MISSES
+        ]
+        failed = [
+            w
+            for w, run_misses in by_window.items()
+            if run_misses.runs >= MIN_RUNS and run_misses.missed > MAX_MISSES
+        ]
+        if by_window:
+            later_passed = [w for w in passed if w > max(failed, default=0)]
+            longest = max(longest, min(later_passed, default=math.inf))
+    return longest or math.inf
 
 
 if __name__ == "__main__":

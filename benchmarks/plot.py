@@ -1,4 +1,4 @@
-"""Cost per collision against the number of particles, and with each effect."""
+"""Figure of the cost per collision over the number of particles."""
 
 from pathlib import Path
 
@@ -7,36 +7,38 @@ from matplotlib.figure import Figure
 
 from benchmarks.kernel import Timing
 from benchmarks.yardstick import Rate
-from roughgas.kernel.memory import FEW
-from roughgas.show.style import FAINT, LOOKS, PARAMETERS, THEORY, WIDTH, save
+from roughgas.kernel.layout import SWEEP_LIMIT
+from roughgas.show.style import FAINT, LINE_STYLES, PARAMETERS, THEORY, WIDTH, save
 
 
 def draw(timings: list[Timing], yardstick: list[Rate], output: Path) -> None:
-    """One line a scene, and the yardstick, into a PNG."""
+    """Draw a line for each scene, and for the yardstick, into a PNG file."""
     with rc_context(PARAMETERS):
         figure = Figure(figsize=(WIDTH, 0.8 * WIDTH), layout="constrained")
         axes = figure.subplots()
         titles = dict.fromkeys(timing.case.title for timing in timings)
-        for title, look in zip(titles, LOOKS, strict=False):
-            line = [(one.number, one.cost) for one in timings if one.case.title == title]
+        for title, line_style in zip(titles, LINE_STYLES, strict=False):
+            line = [
+                (timing.number, timing.cost) for timing in timings if timing.case.title == title
+            ]
             axes.plot(
                 *zip(*line, strict=True),
-                color=look.colour,
-                marker=look.marker,
-                ls=look.line,
+                color=line_style.colour,
+                marker=line_style.marker,
+                ls=line_style.line,
                 label=title,
             )
-        line = [(one.number, 1e6 / one.median) for one in yardstick]
+        line = [(rate.number, 1e6 / rate.median) for rate in yardstick]
         axes.plot(
             *zip(*line, strict=True), color=THEORY, marker="x", label="plain loop (yardstick)"
         )
-        axes.axvline(FEW, color=FAINT, linewidth=0.8)
+        axes.axvline(SWEEP_LIMIT, color=FAINT, linewidth=0.8)
         axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
         axes.set_ylabel("CPU time per collision (µs)")
-        for side, words in (("right", "all pairs "), ("left", " cells")):
+        for side, label in (("right", "all pairs "), ("left", " cells")):
             axes.annotate(
-                words,
-                (FEW, 0.02),
+                label,
+                (SWEEP_LIMIT, 0.02),
                 xycoords=("data", "axes fraction"),
                 ha=side,
                 color=FAINT,

@@ -1,9 +1,9 @@
-"""What it takes to plan a large sweep: time and memory of a dry run.
+"""Cost of planning a large sweep: time and memory of a dry run.
 
     python -m benchmarks.sweep 100000
     python -m benchmarks.sweep 100000 --betas-per-job 25
 
-Of the sheared gas at four seeds, on a grid in r and beta; nothing is simulated.
+The sweep is over r and beta of the sheared gas, with four seeds; nothing is simulated.
 """
 
 import argparse
@@ -17,15 +17,15 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from roughgas.config.reading import read_yaml
+from roughgas.base.reading import read_yaml
 
 ROOT = Path(__file__).parent.parent
-LINKED = ("Snakefile", "rules", "profiles", "src", "tests")
+LINKED_PATHS = ("Snakefile", "rules", "profiles", "src", "tests")
 EXPERIMENT, SEEDS, BETAS = "sheared", 4, 250
 
 
 class Plan(NamedTuple):
-    """A dry run: jobs by rule, seconds of CPU and of the clock, and peak memory in GiB."""
+    """Cost of a dry run: jobs by rule, seconds of CPU and wall time, and peak memory in GiB."""
 
     jobs: dict[str, int]
     cpu: float
@@ -34,7 +34,7 @@ class Plan(NamedTuple):
 
 
 def main() -> None:
-    """Plan a sweep and print a line of the table in docs/cluster.md."""
+    """Plan a sweep, and print a row of the table in docs/cluster.md."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("points", type=int, help="a multiple of 1000")
     parser.add_argument("--betas-per-job", type=int, default=1)
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def dry_run(points: int, **settings: Any) -> Plan:
-    """Plan a sweep of so many points, `settings` being those at the top of config.yaml."""
+    """Plan a sweep of a number of points, with top-level `settings` of config.yaml."""
     with tempfile.TemporaryDirectory() as folder:
         _write_project(Path(folder), points // (BETAS * SEEDS), settings)
         target = f"results/paper/{EXPERIMENT}.nc"
@@ -58,7 +58,7 @@ def dry_run(points: int, **settings: Any) -> Plan:
             open(Path(folder) / "output", "w+") as output,
             subprocess.Popen(command, cwd=folder, stdout=output, stderr=output) as process,
         ):
-            # of that process alone, if this one is small: what it held at the fork counts, too
+            # peak memory includes that of this process at the fork: it must be small
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             wall = time.monotonic() - begin
@@ -72,8 +72,8 @@ def dry_run(points: int, **settings: Any) -> Plan:
 
 
 def _write_project(folder: Path, restitutions: int, settings: dict[str, Any]) -> None:
-    """The project, with this many values of r in the sweep."""
-    for name in LINKED:
+    """Write a project with links to this one, and a sweep over a number of values of r."""
+    for name in LINKED_PATHS:
         (folder / name).symlink_to(ROOT / name)
     config = read_yaml(ROOT / "config.yaml")
     config |= settings
@@ -83,7 +83,7 @@ def _write_project(folder: Path, restitutions: int, settings: dict[str, Any]) ->
         "beta": [f"{-0.95 + 1.95 * step / BETAS:.6g}" for step in range(BETAS)],
         "seeds": SEEDS,
     }
-    (folder / "config.yaml").write_text(json.dumps(config))  # which is YAML, too
+    (folder / "config.yaml").write_text(json.dumps(config))  # JSON is YAML
 
 
 if __name__ == "__main__":

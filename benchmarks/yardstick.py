@@ -1,9 +1,9 @@
 """The yardstick: rough disks by the plainest compiled loop.
 
-At each collision all disks are moved; then the contacts of the two partners, and of those who were
-to meet one of them, are foreseen anew by a loop over all others. The next collision is the least
-entry of an array. Nothing here is the kernel's: the rate says how fast a machine is, and ratios to
-it can be compared between machines.
+At each collision all disks are moved; then the contacts of the two partners, and of disks about to
+meet either, are predicted by a loop over all disks. The next collision is the minimum of an array.
+It shares no code with the kernel: its rate measures the speed of a machine, and ratios to it can be
+compared between machines.
 """
 
 import math
@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-REFERENCE = 160  # particles: of the rate that all others are multiples of
+REFERENCE = 160  # number of particles of the rate to which others are compared
 NUMBERS = (40, REFERENCE, 1_000)
 DENSITY = 160 / 100**2  # disks of radius 1 per area: the paper's cooling gas
-LEAST_WORK = 10_000_000  # pairs that are tried in a run
+PAIRS_PER_RUN = 10_000_000  # tested for contacts
 RUNS = 5
 INERTIA = 0.5
 
@@ -30,15 +30,15 @@ class Rate(NamedTuple):
 
     @property
     def median(self) -> float:
-        """Of the runs."""
+        """Median of the runs."""
         return statistics.median(self.rates)
 
 
 def measure(number: int, runs: int = RUNS) -> Rate:
-    """Rate of a smooth elastic gas of so many disks, like that of the kernel's cooling gas."""
+    """Return the rate of a smooth elastic gas of `number` disks, like the kernel's cooling gas."""
     gas, length = _gas(number), math.sqrt(number / DENSITY)
-    collisions = LEAST_WORK // (2 * number)
-    run(*gas, length, 1.0, -1.0, 20 * number)  # compiles, and forgets the lattice
+    collisions = PAIRS_PER_RUN // (2 * number)
+    run(*gas, length, 1.0, -1.0, 20 * number)  # compiles, and melts the lattice
     rates = []
     for _ in range(runs):
         begin = time.process_time()
@@ -48,19 +48,19 @@ def measure(number: int, runs: int = RUNS) -> Rate:
 
 
 def _gas(number):
-    """Positions on a lattice, Maxwellian velocities, no spins."""
+    """Return positions on a lattice, Maxwellian velocities, and zero spins."""
     side = math.ceil(math.sqrt(number))
-    places = np.stack(np.divmod(np.arange(number), side), axis=-1)
+    sites = np.stack(np.divmod(np.arange(number), side), axis=-1)
     velocities = np.random.default_rng(1).standard_normal((number, 2))
     spacing = math.sqrt(number / DENSITY) / side
-    return places * spacing, velocities - velocities.mean(axis=0), np.zeros(number)
+    return sites * spacing, velocities - velocities.mean(axis=0), np.zeros(number)
 
 
 @numba.njit
 def run(x, v, w, length, r, beta, collisions):
-    """Make so many collisions; positions, velocities and spins of all disks are changed in place.
+    """Make a number of collisions, changing positions, velocities and spins in place.
 
-    Returns the time that passes.
+    Returns the elapsed time.
     """
     number, now = len(x), 0.0
     next_time, partner = np.full(number, np.inf), np.zeros(number, np.int64)
@@ -85,9 +85,9 @@ def run(x, v, w, length, r, beta, collisions):
 
 @numba.njit
 def predict_events(x, v, i, length, now, next_time, partner):
-    """The earliest contact of disk i with the nearest image of any other disk.
+    """Store the earliest contact of disk i with the nearest image of any other disk.
 
-    Another image may come first after a flight of half the box; such a contact is found late.
+    After a flight of half the box another image may be first; such a contact is found late.
     """
     next_time[i] = np.inf
     for j in range(len(x)):
@@ -102,7 +102,8 @@ def predict_events(x, v, i, length, now, next_time, partner):
 
 @numba.njit
 def contact(dx, dy, ux, uy):
-    """Time until two disks at this separation touch; inf if never."""
+    """Return the time until two disks with this separation and relative velocity touch; inf if
+    they do not."""
     b = dx * ux + dy * uy
     square = ux * ux + uy * uy
     c = dx * dx + dy * dy - 4.0
@@ -114,7 +115,7 @@ def contact(dx, dy, ux, uy):
 
 @numba.njit
 def collide(x, v, w, i, j, length, r, beta):
-    """The paper's Eq. (collrule) for two disks that touch."""
+    """Apply the collision rule, the paper's Eq. (collrule), to two disks in contact."""
     nx, ny = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1]
     nx -= length * round(nx / length)
     ny -= length * round(ny / length)

@@ -1,229 +1,130 @@
-# What the rules share. Bad input ends the workflow with one line, before anything is run.
+# Definitions shared by the rules. Bad input ends the workflow with one line, before any job runs.
 import gc
 
-gc.set_threshold(100_000)  # a fifth of Snakemake's own time goes into looking for what nobody uses
-import difflib
-import fcntl
-import functools
-import hashlib
-import json
+gc.set_threshold(100_000)  # garbage collection takes a fifth of Snakemake's own time
 import os
 import re
 import sys
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from snakemake.logging import logger
-from snakemake.settings.types import DeploymentMethod
+from snakemake.utils import min_version
+
+min_version("9.27")  # as pyproject.toml says
 
 try:
     import roughgas.config
-    from roughgas.config import schema
-    from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_in, code_of as hash_of_code
-    from roughgas.base import InputError, not_one_of, shown
-    from roughgas.base import in_rst
-    from roughgas.config.reading import read_yaml
-    from roughgas.config.schema import keys
+    from roughgas.base import InputError, sorted_json
+    from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_of as hash_of_code
     from roughgas.show import catalogue
+    from roughgas.workflow import changes, executors, hard_cases, internals, paths, products
+    from roughgas.workflow.figures import Figures
+    from roughgas.workflow.fingerprints import CHECKING
+    from roughgas.workflow.hard_cases import HardCases
+    from roughgas.workflow.paths import COMBINED, EXPERIMENT, KERNEL, NAME, POINT, REDUCED, TASK
+    from roughgas.workflow.paths import VARIANT, alternatives
+    from roughgas.workflow.products import Products
+    from roughgas.workflow.studies import Studies, experiments_in_order
+    from roughgas.workflow.sweeps import URGENT, Sweeps, points_of_job
+    from roughgas.workflow.tasks import Tasks
+    from roughgas.workflow.wildcards import exit_on_bad_input, from_wildcards, per_attempt
+    from roughgas.workflow.wildcards import unrecorded
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
-# where the Snakefile is: this folder, or another one, or, of a module, a site from which Snakemake
-# fetches what it needs
-SOURCE = Path(os.path.relpath(Path(workflow.current_basedir.get_path_or_uri(True)).parent))
-PACKAGE = os.path.relpath(PACKAGE_FOLDER)  # so that a folder may be moved with its results
-# a module leaves the configuration of this folder to its host; so does what includes the Snakefile
-IS_MODULE = workflow.modifier.namespace is not None
-# the configuration of this folder, or else the one beside the Snakefile
+# the location of the rules: a folder, or the address of a remote module
+BASE = internals.rules_of(workflow)
+IS_REMOTE = "://" in BASE
+PACKAGE = os.path.relpath(PACKAGE_FOLDER)  # relative, so that the folder can be moved
+SOURCE = Path(PACKAGE) if IS_REMOTE else Path(os.path.relpath(Path(BASE).parent))
+# a module, or an included Snakefile, leaves the configuration of this folder to its host
+IS_MODULE = internals.is_module(workflow)
+DEFAULT = internals.default_of(workflow)  # default rule of a module's host, if already defined
+# the configuration in this folder, or else beside the Snakefile
 CONFIG = next(
-    (
-        str(folder / "config.yaml")
-        for folder in ([] if IS_MODULE else [Path()]) + [SOURCE]
-        if (folder / "config.yaml").exists()
-    ),
-    None,
+    str(folder / "config.yaml")
+    for folder in [*([] if IS_MODULE else [Path()]), SOURCE]
+    if (folder / "config.yaml").exists()
 )
-CONFIG = CONFIG or workflow.source_path("../config.yaml")
-IMAGE = str(SOURCE / "roughgas.sif")
-KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
-POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
-REDUCED = "results/{scale}/{experiment}.nc"
-FIRST = 10**12  # priority: more urgent than any point
-# An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
-# the folders of points.
-RESERVED = "|".join(schema.RESERVED)
-NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become parts of commands
-EXPERIMENT = rf"(?!(?:{RESERVED})[./]){NAME}"
-VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"
-# rules call the `roughgas` beside this snakemake, wherever it was started from
+# rules call the `roughgas` in the environment of this snakemake
 os.environ |= {"PATH": os.pathsep.join([str(Path(sys.executable).parent), *os.get_exec_path()])}
 
 
-@contextmanager
-def one_line(place=None):
-    """End the workflow with one line where the input turns out to be bad."""
-    try:
-        yield
-    except InputError as error:
-        sys.exit(f"roughgas: error: {place}: {error}" if place else f"roughgas: error: {error}")
-    except OSError as error:
-        sys.exit(f"roughgas: error: {error.filename}: {error.strerror}")
-
-
-def check_folders():
-    """End the workflow with one line where Snakemake would take a folder's name for a pattern."""
-    for folder in (str(SOURCE), PACKAGE):
-        with one_line():
-            if set("{}") & set(folder):
-                legal = "have no { or }, Snakemake's signs of a wildcard, or be where you work"
-                raise InputError("folder", os.path.abspath(folder), legal)
-
-
 def image():
-    """The container of --sdm apptainer. Snakemake takes it for part of a command, used or not."""
-    if re.fullmatch(r"[\w./+@%:,=-]+", IMAGE, re.ASCII):
-        return IMAGE
-    with one_line():
-        if DeploymentMethod.APPTAINER in workflow.deployment_settings.deployment_method:
+    """The container for --sdm apptainer. Snakemake puts its path into commands, used or not."""
+    path = str(SOURCE / "roughgas.sif")
+    if re.fullmatch(r"[\w./+@%:,=-]+", path, re.ASCII):
+        return path
+    with exit_on_bad_input():
+        if internals.uses_apptainer(workflow):
             legal = "be a path without spaces, quotes and brackets for apptainer"
-            raise InputError("container", os.path.abspath(IMAGE), legal)
+            raise InputError("container", os.path.abspath(path), legal)
     return None
 
 
-def of_project(*paths):
-    """Files beside the Snakefile, or of the package: none of them lies below a module's prefix, and
-    none begins as an option does."""
-    return [local(os.path.abspath(p) if str(p).startswith("-") else str(p)) for p in paths]
+def of_project(*files):
+    """Files beside the Snakefile, or of the package, as paths without the prefix of a module that
+    cannot be taken for options."""
+    return [local(os.path.abspath(f) if str(f).startswith("-") else str(f)) for f in files]
 
 
-def own_config(changes):
-    """What the command line, or the host of a module, changes. A host's own keys are no mistake."""
-    known = keys()
-    foreign = [key for key in changes if key not in known] if IS_MODULE else []
-    if foreign:
-        logger.warning(f"roughgas: of the host's config these are not read: {', '.join(foreign)}")
-    return {key: value for key, value in changes.items() if key not in foreign}
+def of_pages(*files):
+    """Templates and scripts of pages in the package."""
+    return of_project(*(f"{PACKAGE}/show/{file}" for file in files))
 
 
-def checked_config(path, changes):
-    """The configuration at `path`, with the changes that the command line makes to it."""
-    with one_line():
-        return roughgas.config.load(path, changes)
+def of_checkout(folder, pattern="*.*"):
+    """An input: files of a folder in a checkout of the project, which a package lacks."""
+    files = from_wildcards(
+        products.files_of_checkout, source=SOURCE, folder=folder, pattern=pattern
+    )
+    return lambda wildcards: of_project(*files(wildcards))
 
 
-def nearest(key, name, kind, known):
-    """The error of a name that is not known, with the known ones that are most like it."""
-    found = difflib.get_close_matches(name, sorted(known), 3, 0.0)
-    return InputError(key, shown(name), f"be {kind}, such as {', '.join(found)}")
+def code_of(*modules, alone=()):
+    """A param: the hash of modules, and of all that they import. Imports of modules in `alone` do
+    not count."""
+    return lambda wildcards: hash_of_code(*modules, alone=alone)
 
 
-def content_of_files(settings):
-    """The hashes of files that settings take radii from, wherever in them."""
-    if isinstance(settings, dict):
-        if settings.get("distribution") == "file":
-            return [hash_of_file(settings["file"])]
-        settings = list(settings.values())
-    found = map(content_of_files, settings) if isinstance(settings, list) else ()
-    return [one for some in found for one in some]
+def extensions_of_run(wildcards):
+    """The products of all studies beyond the paper; studies with unreadable code are left out."""
+    files, refused = run_products.extensions()
+    for error in refused:
+        logger.warning(f"roughgas: error: {error} (left out; all else can be made)")
+    return files
 
 
-def with_files(code, settings):
-    """The hash of code, and those of files that settings, as JSON, take radii from."""
-    files = content_of_files(json.loads(settings)) if '"file"' in settings else []
-    return " ".join([code, *files])
+for folder in (str(SOURCE), PACKAGE):
+    with exit_on_bad_input():
+        if set("{}") & set(folder):
+            legal = "have no { or }, Snakemake's signs of a wildcard, or be where you work"
+            raise InputError("folder", os.path.abspath(folder), legal)
 
+with exit_on_bad_input():
+    files = internals.configuration_files(workflow)
+    if IS_MODULE:
+        CHANGES, foreign = changes.of_host(config)
+        if foreign:
+            logger.warning(
+                f"roughgas: of the host's config these are not read: {', '.join(foreign)}"
+            )
+    elif files:
+        CHANGES = changes.of_command_line(files, internals.options_of_configuration(workflow))
+    else:
+        CHANGES = config
+    CONFIGURATION = roughgas.config.load(CONFIG, CHANGES)
+SCALE = CONFIGURATION.scale
+config = {**config, "scale": SCALE}  # for captions of the report
 
-@functools.cache
-def hash_of_file(path):
-    with one_line():
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
+sweeps = Sweeps(CONFIGURATION, experiments_in_order(CONFIGURATION))
+with exit_on_bad_input():
+    studies = Studies(CONFIGURATION, sweeps)
+tasks = Tasks(studies)
+drawings = Figures(studies)
+run_products = Products(studies, tasks)
+cases = HardCases(SOURCE)
 
-
-@functools.cache
-def settings(scale, experiment):
-    """The settings of an experiment, or of a variant, at a scale, checked."""
-    with one_line(f"results/{scale}/{experiment}"):
-        found = roughgas.config.experiment(config, experiment, scale)
-    for name, variant in roughgas.config.every_variant(experiment, found).items():
-        with one_line(f"config.yaml: experiments.{name} at scale {scale}"):
-            from roughgas.simulation.schedule import check
-
-            check(variant)
-    return found
-
-
-def variants(scale, experiment):
-    """The names of an experiment's variants: its own where its sweep has no third axis."""
-    return roughgas.config.variants(experiment, settings(scale, experiment))
-
-
-def points(scale, experiment):
-    """The datasets of all points in the sweep of an experiment."""
-    return [
-        POINT.format(scale=scale, experiment=variant, r=r, beta=beta, seed=seed)
-        for variant in variants(scale, experiment)
-        for r, beta, seed in roughgas.config.sweep(settings(scale, experiment))
-    ]
-
-
-def reduced(scale, experiments):
-    """The reduced datasets of experiments; ends the workflow for one that does not exist."""
-    for experiment in experiments:
-        settings(scale, experiment)
-    return [REDUCED.format(scale=scale, experiment=experiment) for experiment in experiments]
-
-
-def scale_of(folder):
-    """The scale of what is drawn into a folder of figures/: `paper` where it is figures/ itself."""
-    return Path(folder).name or "paper"
-
-
-def one_of(labels):
-    """The wildcard constraint for one of these labels; without any, for nothing."""
-    return "|".join(re.escape(str(label)) for label in labels) or "(?!)"
-
-
-def folder_of(scale):
-    """The folder of figures/ for what is drawn at a scale: figures/ itself for `paper`."""
-    return "" if scale == "paper" else f"{scale}/"
-
-
-def kept(product):
-    """A product of this run, and its copy beside the figures, which the documentation reads."""
-    return [f"results/{SCALE}/{product}", f"figures/{folder_of(SCALE)}{product}"]
-
-
-def drawn(figures, kinds=(".pdf", ".png"), scale=None):
-    """The files of figures at a scale, by default that of this run."""
-    folder = folder_of(scale or SCALE)
-    return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in kinds]
-
-
-def code_of(*modules, alone=(), settings=None):
-    """A param for the code that a result depends on: a hash of these modules, such as
-    "simulation.point", and of all that they import. Of those in `alone` their imports do not count.
-    Files count that settings name which the function `settings` returns as JSON.
-
-    As a param it makes Snakemake redo what an edit may change. With lists of files as inputs the
-    scheduler would look at every file for every job, at every step.
-    """
-
-    def code(wildcards):
-        found = hash_of_code(*modules, alone=alone)
-        return with_files(found, settings(wildcards)) if settings else found
-
-    return code
-
-
-def be_alone():
-    """Hold a lock of the system's for as long as this process lives, so that no second Snakemake
-    works in this folder. Snakemake's own locks outlive a process that is killed: see `nolock` in
-    the profiles."""
-    global alive
-    with one_line():
-        alive = open(".snakemake/alive", "w")
-    with suppress(OSError):  # such as on a disk without such locks
-        try:
-            fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            sys.exit("roughgas: error: another Snakemake is at work in this folder")
+if internals.is_main_process(workflow):
+    for line in studies.refused.values():
+        logger.warning(f"roughgas: error: {line} (left out; all else can be made)")

@@ -1,80 +1,54 @@
-# Where a simulation could go wrong: the catalogue in tests/hard_cases, tried as often as it takes.
-TESTS = SOURCE / "tests"
-HARD_CASES = TESTS / "hard_cases"
-FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
-WORDS = HARD_CASES / "cases.yaml"
-DRAWING = [HARD_CASES / "report.py", HARD_CASES / "pictures.py"]
-SHARED = [  # what a family may import
-    path
-    for folder in ("", "brute_force", "exact", "hard_cases")
-    for path in sorted(Path(TESTS, folder).glob("*.py"))
-    if not path.name.startswith("test_") and path not in DRAWING
-]
-LONGEST = ["random_scenes", "long_times", "exact_arithmetic", "remedies"]  # start first
-PICTURES = catalogue.figures_of("hard_cases")
-
-
-def size_of_cases(wildcards):
-    """As often as it takes at the scale `paper`, else as often as among the tests."""
-    return "" if wildcards.folder else "--full"
-
-
-def place_of_tests(wildcards, output):
-    """Made from the output and therefore not recorded: results do not depend on where they are."""
-    return TESTS
-
-
-def cases_of_family(wildcards):
-    return of_project(HARD_CASES / f"test_{wildcards.family}.py")
-
-
-def others_of_family(wildcards):
-    """What removes safeguards runs the cases of all families."""
-    remedies = [HARD_CASES / "remedies.json", *sorted(HARD_CASES.glob("test_*.py"))]
-    return of_project(*remedies) if wildcards.family == "remedies" else []
-
-
-def urgency_of_family(wildcards):
-    return 10 - LONGEST.index(wildcards.family) if wildcards.family in LONGEST else 0
+# The hard cases, where a simulation could go wrong: the catalogue in tests/hard_cases, at full length.
 
 
 rule family:
-    # other families start while this one compiles: the kernels of all are the same few
+    # families share a few kernels, which the first family compiles.
+    # The checkpoint beside the log has the finished cases, and lets an interrupted family resume;
+    # progress goes to Snakemake's output, not to the log
     input:
-        of_project(*SHARED, WORDS),
-        others_of_family,
-        cases=cases_of_family,
+        of_project(*cases.shared_modules(), cases.descriptions),
+        lambda wildcards: of_project(*cases.extra_inputs(wildcards.family)),
+        cases=lambda wildcards: of_project(cases.cases(wildcards.family)),
     output:
         "results/{folder}hard_cases/{family}.json",
     log:
         "logs/{folder}hard_cases/{family}.log",
     benchmark:
         "logs/{folder}hard_cases/{family}.tsv"
-    priority: urgency_of_family
+    priority: from_wildcards(cases.priority)
     params:
-        code=code_of("simulation.point", "data", alone=["cli.run"]),
-        size=size_of_cases,
+        code=from_wildcards(cases.code),
+        size=from_wildcards(cases.trials_option),
     message:
         "hard cases: {wildcards.family}"
     shell:
         "python -m pytest -n0 -q -s {params.size:q} --margins {output:q} {input.cases:q}"
-        " > {log:q} 2>&1"
+        " --checkpoint {log:q}.checkpoint.json --progress 3 3>&2 > {log:q} 2>&1"
 
 
 rule catalogue:
     input:
-        of_project(*DRAWING),
-        families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
+        of_checkout("tests/hard_cases", "cases.yaml"),
+        of_project(*cases.drawing),
+        families=expand("results/{{folder}}hard_cases/{family}.json", family=cases.families),
     output:
         table="results/{folder}hard_cases.md",
-        pictures=expand("figures/{{folder}}{picture}.pdf", picture=PICTURES),
-        shown=[picture(name) for name in PICTURES],
+        pictures=expand("figures/{{folder}}{picture}.pdf", picture=cases.pictures),
+        shown=[
+            report(
+                f"figures/{{folder}}{picture}.png",
+                caption=f"captions/{picture}.rst",
+                category=catalogue.HEADINGS["hard_cases"],
+                labels=hard_cases.label(picture),
+            )
+            for picture in cases.pictures
+        ],
     log:
         "logs/{folder}hard_cases.log",
     params:
         code=code_of("show.style"),
-        size=size_of_cases,
-        tests=place_of_tests,
+        size=from_wildcards(cases.trials_option),
+        tests=unrecorded(lambda: cases.tests),  # their location does not affect results
     message:
         "write {output.table}"
     shell:

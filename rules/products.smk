@@ -1,183 +1,47 @@
-# What is made of reduced datasets, both for the paper and beyond it: figures, tables, verdicts, pages.
-PARTS = {  # product -> the part of the catalogue of figures whose experiments it shows
-    "R": "paper",
-    "claims": "paper",
-    "run_times": "paper",
-    "explore": "paper",
-    "extensions": "beyond",
-    "run_times_extensions": "beyond",
-    "explore_extensions": "beyond",
-}
+# Products of more than one study, and of a complete run: tables, pages, the article, an archive.
 
 
-OF_EXPLORE = ("base.html", "explore.html", "explore.css", "explore.js", "plots.js", "picture.js")
-OF_LIVING = ("page/base.html", "living/page.html", "living/page.css")
-
-
-def data_of_figure(wildcards):
-    return reduced(scale_of(wildcards.folder), entry_of(wildcards).shows)
-
-
-def data_of_numbers(wildcards):
-    """The reduced datasets of the paper, and of what the page of results quotes of studies."""
-    from roughgas.claims.numbers import quoted  # loads xarray
-
-    page = Path("docs/results.md").read_text(encoding="utf-8")
-    named = {name.rpartition(".")[0] for name in quoted(page)}
-    beyond = sorted(named & {*SWEPT_IN_STUDIES})
-    return reduced(wildcards.scale, [*catalogue.shown_in("paper"), *beyond])
-
-
-def data_of_plot(wildcards):
-    """The reduced dataset of the experiment by whose name a figure is asked for."""
-    with one_line():
-        if wildcards.plotted not in config["experiments"]:
-            known = {*catalogue.FIGURES, *STUDY_OF, *config["experiments"]}
-            raise nearest("figure", wildcards.plotted, "a figure or an experiment", known)
-    return reduced(scale_of(wildcards.folder), [wildcards.plotted])
-
-
-def data_of_talk(wildcards):
-    return reduced(wildcards.scale, entry_of(wildcards).shows)
-
-
-def experiments_of_product(wildcards):
-    part = PARTS[wildcards.product]
-    return SWEPT_IN_STUDIES if part == "beyond" else catalogue.shown_in(part)
-
-
-def data_of_product(wildcards):
-    return reduced(wildcards.scale, experiments_of_product(wildcards))
-
-
-def points_of_product(wildcards):
-    every = (points(wildcards.scale, name) for name in experiments_of_product(wildcards))
-    return [point for some in every for point in some]
-
-
-def descriptions_of_product(wildcards):
-    names = experiments_of_product(wildcards)
-    return [settings(wildcards.scale, name).get("description") for name in names]
-
-
-def heading_of_product(wildcards):
-    return catalogue.HEADINGS[PARTS[wildcards.product]]
-
-
-def name_of_config(wildcards, output):
-    """Made from the output and therefore not recorded: results do not depend on where it is."""
-    return of_project(CONFIG)
-
-
-def folder_of_points(wildcards, output):
-    """That of the page, too; in a module with a prefix it lies below that."""
-    return Path(output[0]).parent
-
-
-rule figure:
-    # at the scale `paper` into figures/, at others into a folder below it
+rule table_of_extensions:
     input:
-        data=data_of_figure,
-    output:
-        "figures/{folder}{figure}.pdf",
-        report(
-            "figures/{folder}{figure}.png",
-            caption="captions/figure.rst",
-            category=heading_of,
-            labels=labels_of,
-        ),
-    log:
-        "logs/figures/{folder}{figure}.log",
-    priority: FIRST
-    params:
-        code=code_of("show.figures.paper", "show.style"),
-        caption=caption_of_figure,
-        experiments=experiments_of_figure,
-    message:
-        "draw {wildcards.folder}{wildcards.figure}"
-    shell:
-        "python -P -m roughgas.steps figure {wildcards.figure:q} {input.data:q}"
-        " --output {output:q} > {log:q} 2>&1"
-
-
-rule plot:
-    # any experiment of config.yaml by its name, as `roughgas plot` draws it
-    input:
-        data=data_of_plot,
-    output:
-        multiext("figures/{folder}{plotted}", ".pdf", ".png"),
-    log:
-        "logs/figures/{folder}{plotted}.log",
-    params:
-        code=code_of("show.figures.sweep", "show.style"),
-    message:
-        "draw {wildcards.folder}{wildcards.plotted}"
-    shell:
-        "roughgas plot {input.data:q} --output {output:q} > {log:q} 2>&1"
-
-
-rule picture_for_talks:
-    input:
-        data=data_of_talk,
-    output:
-        "results/{scale}/pictures/{figure}.svg",
-        "results/{scale}/pictures/{figure}.pdf",
-    log:
-        "logs/{scale}/pictures/{figure}.log",
-    params:
-        code=code_of("show.figures.paper", "show.style"),
-    message:
-        "draw {output}"
-    shell:
-        "python -P -m roughgas.steps figure {wildcards.figure:q} {input.data:q} --slide"
-        " --output {output:q} > {log:q} 2>&1"
-
-
-rule table:
-    input:
-        data=data_of_product,
+        data=from_wildcards(run_products.data, product="extensions"),
     output:
         report(
-            "results/{scale}/{product}.csv",
+            "results/{scale}/extensions.csv",
             caption="captions/table.rst",
-            category=heading_of_product,
-            labels=titled("Table: every number (CSV, to download)"),
+            category=catalogue.HEADINGS["beyond"],
+            labels={"product": "Table: every number (CSV, to download)"},
         ),
     log:
-        "logs/{scale}/{product}_csv.log",
-    wildcard_constraints:
-        product="R|extensions",
+        "logs/{scale}/extensions_csv.log",
     params:
-        code=code_of("results.products"),
+        code=code_of("results.tables"),
     message:
         "write {output}"
     shell:
         "python -P -m roughgas.steps table {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
-rule claims:
+rule run_times:
     input:
-        data=data_of_product,
+        data=from_wildcards(run_products.data),
     output:
-        json="results/{scale}/{product}.json",
-        markdown="results/{scale}/{product}.md",
+        "results/{scale}/{product}.md",
     log:
         "logs/{scale}/{product}.log",
     wildcard_constraints:
-        product="claims",
+        product="run_times|run_times_extensions",
     params:
-        code=code_of("claims"),
+        code=code_of("results.tables"),
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps claims {input:q} --json {output.json:q}"
-        " --markdown {output.markdown:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps run_times {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule quoted_numbers:
-    # what docs/results.md and the article quote
+    # quoted in docs/results.md and in the article
     input:
-        data=data_of_numbers,
+        data=from_wildcards(run_products.numbers_data, source=SOURCE),
         claims="results/{scale}/claims.json",
     output:
         "results/{scale}/numbers.json",
@@ -193,43 +57,78 @@ rule quoted_numbers:
 
 
 rule quoted_by_documentation:
-    # beside the figures, where the documentation finds it in a clone that has no results
+    # copied to the figures, so that the documentation finds it in a clone without results
     input:
-        lambda wildcards: f"results/{scale_of(wildcards.folder)}/{wildcards.file}",
+        lambda wildcards: f"results/{paths.scale_of(wildcards.folder)}/{wildcards.file}",
     output:
         "figures/{folder}{file}",
     log:
         "logs/figures/{folder}{file}.log",
     wildcard_constraints:
-        file=one_of(["evidence.csv", "numbers.json"]),
+        file=alternatives(["evidence.csv", "numbers.json"]),
     message:
         "write {output}"
     shell:
         "cp {input:q} {output:q} 2> {log:q}"
 
 
-rule run_times:
+rule rows_of_evidence:
     input:
-        data=data_of_product,
+        expand("results/{{scale}}/{study}/evidence.csv", study=studies.with_evidence),
     output:
-        "results/{scale}/{product}.md",
+        "results/{scale}/evidence.csv",
     log:
-        "logs/{scale}/{product}.log",
-    wildcard_constraints:
-        product="run_times|run_times_extensions",
+        "logs/{scale}/evidence.log",
     params:
-        code=code_of("results.products"),
+        code=code_of("results.row_verdicts"),
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps run_times {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps evidence {input:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule page_of_evidence:
+    input:
+        "results/{scale}/evidence.csv",
+    output:
+        "results/{scale}/evidence.md",
+    log:
+        "logs/{scale}/evidence_page.log",
+    params:
+        code=code_of("results.evidence_page"),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps evidence_page {input:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule figure_of_evidence:
+    input:
+        lambda wildcards: f"results/{paths.scale_of(wildcards.folder)}/evidence.csv",
+    output:
+        "figures/{folder}evidence.pdf",
+        report(
+            "figures/{folder}evidence.png",
+            caption="captions/evidence.rst",
+            category=catalogue.HEADINGS["beyond"],
+            labels={"product": catalogue.FIGURES["evidence"].title},
+        ),
+    log:
+        "logs/figures/{folder}evidence_figure.log",
+    params:
+        code=code_of("show.figures.evidence", "show.style"),
+    message:
+        "draw {output}"
+    shell:
+        "python -P -m roughgas.steps evidence_figure {input:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule page:
     input:
-        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_EXPLORE)),
-        points_of_product,
-        data=data_of_product,
+        of_pages("page/base.html", "page/explore.html", "page/explore.css"),
+        of_pages("page/explore.js", "page/plots.js", "page/picture.js"),
+        from_wildcards(run_products.points),
+        data=from_wildcards(run_products.data),
     output:
         "results/{scale}/{product}.html",
     log:
@@ -238,9 +137,10 @@ rule page:
         product="explore|explore_extensions",
     params:
         code=code_of("show.explore"),
-        descriptions=descriptions_of_product,
-        config=name_of_config,
-        points=folder_of_points,
+        descriptions=from_wildcards(run_products.descriptions),
+        # not recorded: their location does not affect results
+        config=lambda wildcards, output: of_project(CONFIG),
+        points=lambda wildcards, output: Path(output[0]).parent,
     message:
         "write {output}"
     shell:
@@ -249,9 +149,9 @@ rule page:
 
 
 rule living_page:
-    # at any scale: its gas is as large as the page can show
+    # the same at any scale: the page limits the size of its gas
     input:
-        of_project(*(f"{PACKAGE}/show/{name}" for name in OF_LIVING)),
+        of_pages("page/base.html", "living/page.html", "living/page.css"),
         of_project(*sorted(Path(PACKAGE, "show/living").glob("*.js"))),
         config=of_project(CONFIG),
     output:
@@ -259,8 +159,145 @@ rule living_page:
     log:
         "logs/{scale}/living.log",
     params:
-        code=code_of("show.living"),
+        code=code_of("show.living", alone=CHECKING),
     message:
         "write {output}"
     shell:
         "python -P -m roughgas.steps living --config {input.config:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule document:
+    input:
+        of_pages("page/base.html", "page/document.html", "page/document.css"),
+        shown=from_wildcards(products.document_source),
+    output:
+        report(
+            "results/{scale}/{document}.html",
+            caption="captions/document.rst",
+            category=from_wildcards(products.document_heading),
+            labels=from_wildcards(products.document_label),
+        ),
+    log:
+        "logs/{scale}/{document}_html.log",
+    wildcard_constraints:
+        document="|".join(catalogue.DOCUMENTS),
+    params:
+        code=code_of("show.pages"),
+        caption=unrecorded(products.document_caption),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps document {input.shown:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule front:
+    # precedes Snakemake's report, which opens on the graph of the workflow
+    input:
+        of_pages("page/base.html", "page/front.html", "page/front.css"),
+        readme=of_project(f"{studies.paper.folder}/README.md"),
+        figures=from_wildcards(run_products.paper_pictures),
+        claims="results/{scale}/claims.md",
+    output:
+        "results/{scale}/report.html",
+    log:
+        "logs/{scale}/report.log",
+    params:
+        code=code_of("show.pages"),
+        reservation=from_wildcards(studies.reservation_of_readme, study_folder=""),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps front {input.claims:q} --figures {input.figures:q}"
+        " --readme {input.readme:q} --reservation={params.reservation:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule effective_config:
+    input:
+        of_project(*sorted(Path(PACKAGE, "config").glob("*.yaml"))),
+        file=of_project(CONFIG),
+    output:
+        report(
+            "results/{scale}/config.yaml",
+            caption="captions/config.rst",
+            category=catalogue.HEADINGS["this_run"],
+            labels={"product": "Configuration (YAML, to download)"},
+        ),
+    log:
+        "logs/{scale}/config.log",
+    params:
+        code=code_of("config", alone=CHECKING),
+        changes=sorted_json({key: change for key, change in CHANGES.items() if key != "scale"}),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps effective_config {input.file:q} --scale {wildcards.scale:q}"
+        " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule article_pdf:
+    input:
+        source=of_checkout("article"),
+        numbers="results/{scale}/numbers.json",
+        claims="results/{scale}/claims.json",
+        table="results/{scale}/R.csv",
+        figures=from_wildcards(run_products.article_figures),
+    output:
+        "results/{scale}/article.pdf",
+    log:
+        "logs/{scale}/article.log",
+    params:
+        code=from_wildcards(run_products.article_code),
+        # no input: these tables are committed, and take hours to make
+        long=from_wildcards(run_products.article_tables),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps article {input.source:q} {params.long:q} --numbers {input.numbers:q} --claims {input.claims:q}"
+        " --table {input.table:q} --figures {input.figures:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule codemeta:
+    input:
+        of_checkout("", "CITATION.cff"),
+    output:
+        "codemeta.json",
+    log:
+        "logs/codemeta.log",
+    params:
+        code=code_of("results.crate"),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps codemeta {input:q} --output {output:q} > {log:q} 2>&1"
+
+
+# packed in addition to the results and figures of the paper; a deposit includes the article
+PACKED = {
+    "crate": [],
+    "deposit": multiext(f"results/{SCALE}/", "article.pdf", "numbers.json"),
+}
+for name, extra_products in PACKED.items():
+
+    rule:
+        name:
+            name
+        input:
+            lambda wildcards: of_project(
+                *from_wildcards(products.files_to_pack, source=SOURCE)(wildcards)
+            ),
+            data=from_wildcards(studies.table_data, scale=SCALE, study_folder=""),
+            tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
+            figures=paths.figure_files(studies.paper.drawn, SCALE),
+            more=extra_products,
+        output:
+            f"results/{SCALE}/{name}.zip",
+        log:
+            f"logs/{SCALE}/{name}.log",
+        params:
+            code=code_of("results.crate"),
+            configuration=CONFIGURATION.text,
+        message:
+            "pack the run into {output}"
+        shell:
+            "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} {input.more:q}"
+            " --output {output:q} --configuration {params.configuration:q} > {log:q} 2>&1"

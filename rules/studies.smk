@@ -1,277 +1,145 @@
-# Studies: folders that hold a question beyond the paper each, found by being there. What no sweep of an
-# experiment answers has tasks of its own, independent jobs, and a dataset that combines them.
-from roughgas.config import study_folders
-from roughgas.show.pages import captions
+# Products of a study: the paper, or any other folder of studies/. All studies have the same rules.
+# The tables of a study are in results/{scale}/{study_folder}, where `study_folder` is NAME/, or empty
+# for the paper. For questions that a sweep cannot answer, a study has tasks, which are independent jobs,
+# and a dataset that combines them.
 
-STUDIES = config[roughgas.config.FOLDERS]
-BROKEN = {
-    name: f"roughgas: error: {InputError(*error)}"
-    for name, error in config[roughgas.config.BROKEN].items()
-}
-OF_STUDY = "results/{scale}/{study}/"  # products, beside results/{scale}/{study}.{experiment}
-TASK_OF_STUDY = f"{OF_STUDY}tasks/{{task}}.nc"
-WITH_TASKS = [name for name, about in STUDIES.items() if "tasks" in about]
-WITH_MOVIE = [name for name in WITH_TASKS if Path(STUDIES[name]["folder"], "movie.py").exists()]
-WITH_SLIDES = [
-    name for name, about in STUDIES.items() if Path(about["folder"], "slides.py").exists()
-]
-SWEPT_IN_STUDIES = [one for about in STUDIES.values() for one in about["experiments"]]
-OF_SLIDES = ("base.html", "document.css", "slides.html", "slides.css", "slides.js")
-STUDY_OF = {figure: name for name, about in STUDIES.items() for figure in about["figures"]}
 
-if workflow.is_main_process:
-    for line in BROKEN.values():
-        logger.warning(f"{line} (left out; all else can be made)")
-
-
-def study_of(wildcards):
-    """What is known of the study that a rule makes something of."""
-    return STUDIES[wildcards.get("study") or STUDY_OF[wildcards.drawn]]
-
-
-def datasets_of(study, scale, names):
-    """The reduced datasets of experiments; `tasks` stands for what the tasks of a study have found."""
-    found = [OF_STUDY.format(scale=scale, study=study) + "data.nc"] if "tasks" in names else []
-    return reduced(scale, [one for one in names if one != "tasks"]) + found
-
-
-def data_of_study_figure(wildcards):
-    study = STUDY_OF[wildcards.drawn]
-    return datasets_of(study, scale_of(wildcards.folder), names_of_study_figure(wildcards))
-
-
-def names_of_study_figure(wildcards):
-    return study_of(wildcards)["figures"][wildcards.drawn]
-
-
-def data_of_study(wildcards):
-    return reduced(wildcards.scale, study_of(wildcards)["experiments"])
-
-
-def data_of_study_claims(wildcards):
-    """The reduced datasets of all experiments that the statements of a study are on."""
-    about = study_of(wildcards)
-    own = {one.partition(".")[2]: one for one in about["experiments"]}
-    with one_line():
-        rows = read_yaml(Path(about["folder"], "claims.yaml"))
-    names = [own.get(one, one) for row in rows.values() for one in row["experiments"]]
-    return datasets_of(wildcards.study, wildcards.scale, dict.fromkeys(names))
-
-
-def code_of_study_figure(wildcards):
-    return code_beside(study_of(wildcards), ["*.py", "*.csv"], "show.gallery", "plotting")
-
-
-def code_of_study_slides(wildcards):
-    return code_beside(study_of(wildcards), ["*.py", "*.csv"], "show.slides", "plotting")
-
-
-def code_of_study_claims(wildcards):
-    modules = "judging", "claims"
-    return code_beside(study_of(wildcards), ["*.py", "*.csv", "claims.yaml"], *modules)
-
-
-def option_of_experiments(wildcards):
-    names = study_of(wildcards)["experiments"]
-    return ["--experiments", *names] if names else []
-
-
-def code_beside(about, patterns, *modules):
-    """A hash of the files of a study that match any of these patterns, and of modules that they use."""
-    found = [path for one in patterns for path in sorted(Path(about["folder"]).glob(one))]
-    return " ".join([hash_of_code(*modules), *map(hash_of_file, found)])
-
-
-@functools.cache
-def tasks_of_study_folder(name, scale):
-    """The names of a study's tasks, the longest first."""
-    from roughgas.tasks.running import names  # loads xarray
-
-    settings = study_folders.tasks(config, name, scale)["study"]
-    return names(STUDIES[name]["folder"], settings)
-
-
-def settings_of_study_task(wildcards):
-    """The settings of a study's tasks and of the experiments that they may run, as JSON."""
-    with one_line(TASK_OF_STUDY.format(**wildcards)):
-        known = tasks_of_study_folder(wildcards.study, wildcards.scale)
-        if wildcards.task not in known:
-            raise not_one_of("task", wildcards.task, known)
-        found = study_folders.tasks(config, wildcards.study, wildcards.scale)
-    return roughgas.config.as_text(found)
-
-
-def code_of_study_task(wildcards):
-    with one_line():
-        code = code_in(study_of(wildcards)["folder"], "tasks", alone=["tasks.running"])
-    return with_files(code, settings_of_study_task(wildcards))
-
-
-def code_of_study_data(wildcards):
-    folder = Path(study_of(wildcards)["folder"])
-    beside = [path.name for path in folder.glob("variables.yaml")]
-    with one_line():
-        return code_in(folder, "results", beside, alone=["tasks.running"])
-
-
-def urgency_of_study_task(wildcards):
-    with one_line():
-        names = tasks_of_study_folder(wildcards.study, wildcards.scale)
-    return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
-
-
-def tasks_of_study_data(wildcards):
-    with one_line():
-        names = tasks_of_study_folder(wildcards.study, wildcards.scale)
-    return [TASK_OF_STUDY.format(**wildcards, task=task) for task in names]
-
-
-# made from the output and therefore not recorded: results do not depend on where a study is, nor on
-# what a caption says
-
-
-def folder_of_study(wildcards, output):
-    return study_of(wildcards)["folder"]
-
-
-def caption_of_study_figure(wildcards, output):
-    about = study_of(wildcards)
-    return captions(about["folder"], [*about["figures"]]).get(wildcards.drawn, "")
-
-
-def experiments_of_study_figure(wildcards, output):
-    names = [one for one in names_of_study_figure(wildcards) if one != "tasks"]
-    return described(scale_of(wildcards.folder), names)
-
-
-def tasks_of_study_figure(wildcards, output):
-    """The settings of tasks by the study, for the caption of a figure that shows what these found."""
-    if "tasks" not in names_of_study_figure(wildcards):
-        return {}
-    scale, name = scale_of(wildcards.folder), STUDY_OF[wildcards.drawn]
-    return {name: study_folders.tasks(config, name, scale)["study"]}
-
-
-def title_of_study(wildcards):
-    return study_of(wildcards)["title"]
-
-
-def labels_of_study(wildcards):
-    return titled(title_of_study(wildcards))
-
-
-def figures_of_study(name, kinds, scale):
-    """The figures of a study: those that its figure.py draws, or else one of each experiment."""
-    about = STUDIES[name]
-    return drawn(about["figures"] or about["experiments"], kinds, scale)
-
-
-def tables_of_study(name, scale):
-    """The tables of a study by what they are of: R of its experiments, and what its tasks found."""
-    folder, about = OF_STUDY.format(scale=scale, study=name), STUDIES[name]
-    tables = {"table": [f"{folder}R.csv"]} if about["experiments"] else {}
-    return tables | ({"found": [f"{folder}data.md"]} if "tasks" in about else {})
-
-
-def inputs_of_study_page(wildcards):
-    return tables_of_study(wildcards.study, wildcards.scale)
-
-
-def options_of_study_page(wildcards, input):
-    return [f"--{key}={input[key]}" for key in ("table", "found", "claims") if input.get(key)]
-
-
-def pictures_of_study(wildcards):
-    return figures_of_study(wildcards.study, [".png"], wildcards.scale)
-
-
-def claims_of_study(wildcards):
-    about = study_of(wildcards)
-    there = Path(about["folder"], "claims.yaml").exists()
-    return [f"{OF_STUDY.format(**wildcards)}claims.md"] if there else []
-
-
-def readme_of_study(wildcards):
-    about = study_of(wildcards)
-    return of_project(*Path(about["folder"]).glob("README.md"))
-
-
-def products_of(name):
-    """The input function of a study's rule: all that there is to it."""
-
-    def products(wildcards):
-        if name in BROKEN:
-            sys.exit(BROKEN[name])
-        figures = figures_of_study(name, [".pdf", ".png"], SCALE)
-        if name in WITH_MOVIE:
-            figures += drawn([name], [".mp4"])
-        if name in WITH_SLIDES:
-            figures += drawn([name], [".html"])
-        tables = [path for paths in tables_of_study(name, SCALE).values() for path in paths]
-        return [*figures, *tables, f"{OF_STUDY.format(scale=SCALE, study=name)}page.html"]
-
-    return products
-
-
-def products_of_each(wildcards):
-    """All that there is to all studies, but for those whose code cannot be read."""
-    found = []
-    for name in STUDIES:
-        try:
-            if name in WITH_TASKS:
-                tasks_of_study_folder(name, SCALE)
-                code_in(STUDIES[name]["folder"], "results")
-            found += products_of(name)(wildcards)
-        except InputError as error:
-            logger.warning(f"roughgas: error: {error} (left out; all else can be made)")
-    return found
-
-
-rule study_figure:
-    input:
-        data=data_of_study_figure,
+rule task:
+    # the checkpoint of a killed task is not an output, which Snakemake would delete
     output:
-        "figures/{folder}{drawn}.pdf",
+        TASK,
+    log:
+        "logs/{scale}/{task_folder}/{task}.log",
+    benchmark:
+        "logs/{scale}/{task_folder}/{task}.tsv"
+    priority: from_wildcards(tasks.priority)
+    params:
+        code=from_wildcards(tasks.code),
+        settings=from_wildcards(tasks.settings),
+        folder=unrecorded(tasks.folder),
+        module=unrecorded(tasks.module),
+    message:
+        "study {wildcards.task_folder}: {wildcards.task}"
+    shell:
+        "python -P -m roughgas.steps task {params.folder:q} {wildcards.task:q} {params.module:q}"
+        " --scale {wildcards.scale:q} --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule combine:
+    input:
+        tasks=from_wildcards(tasks.to_combine),
+    output:
+        data=COMBINED,
+        table="results/{scale}/{combined}.md",
+    log:
+        "logs/{scale}/{combined}.log",
+    params:
+        code=from_wildcards(tasks.combined_code),
+        folder=unrecorded(tasks.combined_folder),
+        modules=unrecorded(tasks.combined_modules),
+    message:
+        "combine the tasks of {wildcards.combined}"
+    shell:
+        "python -P -m roughgas.steps combine {params.folder:q} {input.tasks:q} {params.modules:q}"
+        " --output {output.data:q} --table {output.table:q} > {log:q} 2>&1"
+
+
+rule figure:
+    # in figures/ at the scale `paper`, in a subfolder at other scales
+    input:
+        data=from_wildcards(drawings.data),
+    output:
+        "figures/{folder}{figure}.pdf",
         report(
-            "figures/{folder}{drawn}.png",
+            "figures/{folder}{figure}.png",
             caption="captions/figure.rst",
-            category=catalogue.HEADINGS["beyond"],
-            labels=labels_of_study,
+            category=from_wildcards(drawings.heading),
+            labels=from_wildcards(drawings.label),
         ),
     log:
-        "logs/figures/{folder}{drawn}.log",
-    wildcard_constraints:
-        drawn=one_of(STUDY_OF),
+        "logs/figures/{folder}{figure}.log",
+    priority: from_wildcards(drawings.priority)
     params:
-        code=code_of_study_figure,
-        shows=names_of_study_figure,
-        folder=folder_of_study,
-        caption=caption_of_study_figure,
-        experiments=experiments_of_study_figure,
-        studies=tasks_of_study_figure,
+        code=from_wildcards(drawings.code),
+        shows=from_wildcards(drawings.shows),
+        folder=unrecorded(drawings.study_folder),
+        caption=unrecorded(drawings.caption),
+        experiments=unrecorded(drawings.experiments),
+        studies=unrecorded(drawings.tasks),
     message:
-        "draw {wildcards.folder}{wildcards.drawn}"
+        "draw {wildcards.folder}{wildcards.figure}"
     shell:
-        "python -P -m roughgas.steps study_figure {params.folder:q} {wildcards.drawn:q} {input.data:q}"
+        "python -P -m roughgas.steps figure {params.folder:q} {wildcards.figure:q} {input.data:q}"
         " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
 
 
-rule study_movie:
-    # of what tasks have found, which its movie.py draws
+rule picture_for_talks:
     input:
-        data=lambda wildcards: OF_STUDY.format(
-            scale=scale_of(wildcards.folder), study=wildcards.study
-        )
-        + "data.nc",
+        data=from_wildcards(drawings.talk_data),
+    output:
+        multiext("results/{scale}/pictures/{figure}", ".svg", ".pdf"),
+    log:
+        "logs/{scale}/pictures/{figure}.log",
+    params:
+        code=from_wildcards(drawings.code),
+        shows=from_wildcards(drawings.shows),
+        folder=unrecorded(drawings.study_folder),
+    message:
+        "draw {output}"
+    shell:
+        "python -P -m roughgas.steps figure {params.folder:q} {wildcards.figure:q} {input.data:q} --slide"
+        " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule plot:
+    # any experiment of config.yaml by its name, as `roughgas plot` draws it
+    input:
+        data=from_wildcards(drawings.plot_data),
+    output:
+        multiext("figures/{folder}{plotted}", ".pdf", ".png"),
+    log:
+        "logs/figures/{folder}{plotted}.log",
+    params:
+        code=code_of("show.figures.sweep", "show.style"),
+    message:
+        "draw {wildcards.folder}{wildcards.plotted}"
+    shell:
+        "roughgas plot {input.data:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule movie:
+    # in figures/movies/ at the scale `paper`, in figures/{scale}/movies/ at other scales;
+    # a fresh clone has only the GIFs, and remakes them with the MP4 files
+    output:
+        multiext("figures/{folder}movies/{movie}", ".gif", ".mp4"),
+    log:
+        "logs/figures/{folder}movies/{movie}.log",
+    benchmark:
+        "logs/figures/{folder}movies/{movie}.tsv"
+    params:
+        code=from_wildcards(drawings.movie_code),
+        settings=from_wildcards(drawings.movie_settings),
+        options=from_wildcards(drawings.movie_options),
+    message:
+        "show {wildcards.folder}{wildcards.movie} as it moves"
+    shell:
+        "roughgas movie {params.options:q} --fps=20 --settings {params.settings:q}"
+        " --output {output:q} > {log:q} 2>&1"
+
+
+rule study_movie:
+    # of the data of tasks, by the study's movie.py
+    input:
+        data=from_wildcards(drawings.study_movie_data),
     output:
         "figures/{folder}{study}.mp4",
     log:
         "logs/figures/{folder}{study}_movie.log",
     wildcard_constraints:
-        study=one_of(WITH_MOVIE),
+        study=alternatives(studies.with_movie),
     params:
-        code=code_of_study_figure,
-        folder=folder_of_study,
+        code=from_wildcards(drawings.drawing_code),
+        folder=unrecorded(studies.folder),
     message:
         "draw the movie {output}"
     shell:
@@ -280,144 +148,145 @@ rule study_movie:
 
 
 rule study_slides:
-    # a page with a slider through the pictures that its slides.py draws
+    # a page with a slider through the pictures of the study's slides.py
     input:
-        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_SLIDES)),
-        data=lambda wildcards: reduced(
-            scale_of(wildcards.folder), study_of(wildcards)["experiments"]
-        ),
+        of_pages("page/base.html", "page/document.css", "page/slides.html"),
+        of_pages("page/slides.css", "page/slides.js"),
+        data=from_wildcards(drawings.slides_data),
     output:
         "figures/{folder}{study}.html",
     log:
         "logs/figures/{folder}{study}_slides.log",
     wildcard_constraints:
-        study=one_of(WITH_SLIDES),
+        study=alternatives(studies.with_slides),
     params:
-        code=code_of_study_slides,
-        folder=folder_of_study,
-        title=title_of_study,
+        code=from_wildcards(drawings.slides_code),
+        folder=unrecorded(studies.folder),
+        title=from_wildcards(studies.title),
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps study_slides {params.folder:q} {input.data:q} --title {params.title:q}"
+        "python -P -m roughgas.steps study_slides {params.folder:q} {input.data:q} --title={params.title:q}"
         " --output {output:q} > {log:q} 2>&1"
 
 
-rule study_task:
-    # what a task that is killed leaves beside its output is no output, which Snakemake would delete
-    output:
-        TASK_OF_STUDY,
-    log:
-        "logs/{scale}/{study}/tasks/{task}.log",
-    benchmark:
-        "logs/{scale}/{study}/tasks/{task}.tsv"
-    wildcard_constraints:
-        study=one_of(WITH_TASKS),
-    priority: urgency_of_study_task
-    params:
-        code=code_of_study_task,
-        settings=settings_of_study_task,
-        folder=folder_of_study,
-    message:
-        "study {wildcards.study}: {wildcards.task}"
-    shell:
-        "python -P -m roughgas.steps study_task {params.folder:q} {wildcards.task:q} --scale {wildcards.scale:q}"
-        " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
-
-
-rule study_data:
+rule table:
     input:
-        tasks=tasks_of_study_data,
+        data=from_wildcards(studies.table_data),
     output:
-        data=f"{OF_STUDY}data.nc",
-        table=f"{OF_STUDY}data.md",
+        report(
+            "results/{scale}/{study_folder}R.csv",
+            caption="captions/table.rst",
+            category=from_wildcards(studies.heading_of_tables),
+            labels=from_wildcards(studies.table_label),
+        ),
     log:
-        "logs/{scale}/{study}_data.log",
-    wildcard_constraints:
-        study=one_of(WITH_TASKS),
+        "logs/{scale}/{study_folder}R_csv.log",
     params:
-        code=code_of_study_data,
-        folder=folder_of_study,
-    message:
-        "combine the tasks of {wildcards.study}"
-    shell:
-        "python -P -m roughgas.steps study_data {params.folder:q} {input.tasks:q} --output {output.data:q}"
-        " --table {output.table:q} > {log:q} 2>&1"
-
-
-rule study_table:
-    input:
-        data=data_of_study,
-    output:
-        csv=f"{OF_STUDY}R.csv",
-    log:
-        "logs/{scale}/{study}_csv.log",
-    wildcard_constraints:
-        study=one_of(STUDIES),
-    params:
-        code=code_of("results.products"),
-    message:
-        "write {output.csv}"
-    shell:
-        "python -P -m roughgas.steps table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
-
-
-rule study_claims:
-    input:
-        data=data_of_study_claims,
-    output:
-        json=f"{OF_STUDY}claims.json",
-        markdown=f"{OF_STUDY}claims.md",
-    log:
-        "logs/{scale}/{study}_claims.log",
-    wildcard_constraints:
-        study=one_of(STUDIES),
-    params:
-        code=code_of_study_claims,
-        folder=folder_of_study,
-        title=title_of_study,
-        experiments=option_of_experiments,
+        code=code_of("results.tables"),
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps study_claims {params.folder:q} {input.data:q} --title {params.title:q}"
+        "python -P -m roughgas.steps table {input.data:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule claims:
+    input:
+        data=from_wildcards(studies.claims_data),
+    output:
+        json="results/{scale}/{study_folder}claims.json",
+        markdown="results/{scale}/{study_folder}claims.md",
+    log:
+        "logs/{scale}/{study_folder}claims.log",
+    params:
+        code=from_wildcards(studies.claims_code),
+        folder=unrecorded(studies.folder_of_tables),
+        title=from_wildcards(studies.title_of_tables),
+        experiments=from_wildcards(studies.claims_experiments),
+        reservation=from_wildcards(studies.reservation),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps claims {params.folder:q} {input.data:q} --title={params.title:q}"
         " {params.experiments:q} --json {output.json:q} --markdown {output.markdown:q}"
+        " --reservation={params.reservation:q}"
         " > {log:q} 2>&1"
+
+
+rule study_evidence:
+    # published numbers compared with ours
+    input:
+        data=from_wildcards(studies.evidence_data),
+    output:
+        "results/{scale}/{study_folder}evidence.csv",
+    log:
+        "logs/{scale}/{study_folder}evidence.log",
+    wildcard_constraints:
+        study_folder=alternatives(f"{name}/" for name in studies.with_evidence),
+    params:
+        code=from_wildcards(studies.evidence_code),
+        shows=from_wildcards(studies.evidence_shows),
+        folder=unrecorded(studies.folder_of_tables),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps study_evidence {params.folder:q} {input.data:q}"
+        " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule long_table:
+    # of simulations that take hours, committed beside the code of its study
+    input:
+        data=from_wildcards(studies.long_data),
+    output:
+        "{long_folder}/long.csv",
+    log:
+        "logs/{long_folder}/long.log",
+    wildcard_constraints:
+        long_folder=alternatives(studies.long_folders),
+    params:
+        code=from_wildcards(studies.long_code),
+        shows=from_wildcards(studies.long_shows),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps long_table {wildcards.long_folder:q} {input.data:q}"
+        " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule study_page:
     input:
-        readme_of_study,
-        unpack(inputs_of_study_page),
-        figures=pictures_of_study,
-        claims=claims_of_study,
+        lambda wildcards: of_project(*studies.readme(wildcards.study_folder)),
+        unpack(from_wildcards(studies.page_tables)),
+        figures=from_wildcards(studies.page_figures),
+        claims=from_wildcards(studies.page_claims),
     output:
         report(
-            f"{OF_STUDY}page.html",
+            "results/{scale}/{study_folder}page.html",
             caption="captions/table.rst",
-            category=catalogue.HEADINGS["beyond"],
-            labels=labels_of_study,
+            category=from_wildcards(studies.heading_of_tables),
+            labels=from_wildcards(studies.page_label),
         ),
     log:
-        "logs/{scale}/{study}_page.log",
-    wildcard_constraints:
-        study=one_of(STUDIES),
+        "logs/{scale}/{study_folder}page.log",
     params:
         code=code_of("show.pages"),
-        folder=folder_of_study,
-        title=title_of_study,
-        options=options_of_study_page,
+        folder=unrecorded(studies.folder_of_tables),
+        title=from_wildcards(studies.title_of_tables),
+        options=lambda wildcards, input: studies.page_options(input),
+        reservation=from_wildcards(studies.reservation_of_readme),
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps study_page {params.folder:q} --title {params.title:q}"
-        " --figures {input.figures:q} {params.options:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps study_page {params.folder:q} --title={params.title:q}"
+        " --figures {input.figures:q} {params.options:q} --reservation={params.reservation:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
-for name in [*STUDIES, *BROKEN]:
+for name in [*studies.named, *studies.refused]:
 
     rule:
         name:
             name
         input:
-            products_of(name),
+            from_wildcards(studies.products, study=name),

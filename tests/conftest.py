@@ -1,5 +1,6 @@
-"""What all tests share; its being here also lets them import `synthetic`."""
+"""Fixtures of all tests; the file's location also lets them import `synthetic`."""
 
+import math
 import os
 import signal
 import subprocess
@@ -7,8 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
-from remembered import remember_yaml
+from hypothesis import HealthCheck, settings
+from yaml_cache import remember_yaml
 
 remember_yaml()
 
@@ -19,17 +20,18 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # how long an example takes says nothing where compilers and other jobs share the cores
-settings.register_profile("shared machine", deadline=None)
+SLOW = [HealthCheck.too_slow]
+settings.register_profile("shared machine", deadline=None, suppress_health_check=SLOW)
 settings.load_profile("shared machine")
 
 SHORT = {"base", "claims", "config", "data", "results", "scene", "statistics", "theory"}
 """Folders in which no file takes more than some seconds."""
-WHOLE = 20
+COMPLETE_RUNS = 20
 """How many folders, or files beside them, a run of all tests has at least."""
 
 
 def folder_of(item):
-    """The folder of a test, or its file where that is in none."""
+    """Return the folder of a test, or its file if it is in none."""
     return item.path.relative_to(Path(__file__).parent).parts[0]
 
 
@@ -40,15 +42,21 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture(scope="session", autouse=True)
 def kernels(request, tmp_path_factory):
-    """Kernels for a run of all tests by several workers, which share out compiling them, in
-    processes of their own: a compiler never gives back its gigabyte."""
+    """Compile the kernels of a run by several workers, each a share, in child processes: a compiler
+    never gives back its gigabyte."""
     alone = "PYTEST_XDIST_WORKER" not in os.environ
-    if alone or len({folder_of(item) for item in request.session.items}) < WHOLE:
+    if alone or len({folder_of(item) for item in request.session.items}) < COMPLETE_RUNS:
         return
     folder = tmp_path_factory.getbasetemp().parent / "kernels"
     folder.mkdir(exist_ok=True)
     command = [sys.executable, "-m", "warm", str(folder)]
     subprocess.run(command, cwd=Path(__file__).parent, check=True)
+
+
+@pytest.fixture(autouse=True)
+def no_progress_lines(monkeypatch):
+    """On a busy machine a command of a test takes ten seconds, after which it would show a line."""
+    monkeypatch.setattr("roughgas.simulation.progress.FIRST_LINE_AFTER", math.inf)
 
 
 @pytest.fixture(scope="session")

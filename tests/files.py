@@ -2,16 +2,21 @@
 
 import numpy as np
 import xarray as xr
+from tests.study_modules import ROOT, module_of_study
 
-from roughgas.accuracy import coverage
-from roughgas.accuracy.coverage import MEASURED
-from roughgas.accuracy.running import combine
-from roughgas.config import as_text
+from roughgas.base import sorted_json
 from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import Point, write_point
 from roughgas.results.reduce import reduce_points
+from roughgas.tasks.running import combine
 
-ABOUT = {
+COVERAGE = ROOT / "studies" / "coverage"
+COMBINE = f"combine {COVERAGE} {{}} --modules coverage -o out.nc --table out.md"
+"""The command line that combines the task among the files."""
+DRAW = f"figure {COVERAGE} coverage {{}} --shows coverage -o out.png"
+"""The command line that draws the figure of coverage."""
+
+ATTRIBUTES = {
     "experiment": "vibrated",
     "scale": "small",
     "r": 0.9,
@@ -34,11 +39,13 @@ def write_all(folder):
 
 def _points(folder):
     for number, (wave, r) in enumerate((("sine", 0.9), ("sine", 0.8), ("saw", 0.9), ("saw", 0.8))):
-        place = {"r": r, "swept": "floor.wave", "swept_value": wave}
+        coordinates = {"r": r, "swept": "floor.wave", "swept_value": wave}
         for seed in (1, 2):
-            made = point(seed + 10 * number)
+            new_point = point(seed + 10 * number)
             path = folder / f"points/{wave}{r}_{seed}.nc"
-            write_point(path, made._replace(attributes=ABOUT | place | {"seed": seed}))
+            write_point(
+                path, new_point._replace(attributes=ATTRIBUTES | coordinates | {"seed": seed})
+            )
             yield path
 
 
@@ -66,7 +73,7 @@ def point(seed=1):
             "R_series": rng.random(50),
             "R_series_stderr": np.where(rng.random(50) < 0.5, np.nan, rng.random(50)),
         },
-        ABOUT | {"title": "made up"},
+        ATTRIBUTES | {"title": "made up"},
     )
 
 
@@ -75,13 +82,21 @@ def write_studies(path, folder):
     corners = [{"experiment": "gas", "r": "0.9", "beta": "0"}]
     settings = {"seed": 1, "repetitions": 8, "pooled": 2, "corners": corners}
     rng = np.random.default_rng(3)
-    parts = [
-        {prefix + name: (dim, rng.random(count)) for name in MEASURED}
+    coverage = module_of_study("coverage", "coverage")
+    datasets = [
+        {prefix + name: (dim, rng.random(count)) for name in coverage.RUN_VARIABLES}
         for prefix, dim, count in (("", "run", 8), ("truth_", "long_run", 4))
     ]
-    data = xr.Dataset(parts[0] | parts[1] | {"cpu_seconds": 1.0, "window": 1.0})
+    data = xr.Dataset(datasets[0] | datasets[1] | {"cpu_seconds": 1.0, "window": 1.0})
     (task,) = coverage.tasks(settings)
-    text = as_text({"study": settings, "experiments": {}})
-    about = {"study": "coverage", "task": task, "scale": "small", "settings_json": text}
-    write_netcdf(folder / "task.nc", content_of(data.assign_attrs(about)))
-    combine([folder / "task.nc"], output=path)
+    text = sorted_json({"study": settings, "experiments": {}})
+    attributes = {"study": "coverage", "task": task, "scale": "small", "settings_json": text}
+    write_netcdf(folder / "task.nc", content_of(data.assign_attrs(attributes)))
+    combined_coverage(folder / "task.nc", path)
+
+
+def combined_coverage(task, path):
+    """Write the dataset of coverage, whose only task lies at `task`, to `path`."""
+    table = path.with_suffix(".md")
+    combine(COVERAGE, [task], modules=["coverage"], output=path, table=table)
+    table.unlink()

@@ -1,8 +1,7 @@
-"""The machine code of a scene, as numba keeps it in its cache; and the same compiled where nothing
-that the scene does without could be compiled at all.
+"""The machine code of a scene's kernel in numba's cache, also with every absent effect poisoned.
 
-As a program, `machine_code.py KERNEL [EFFECT ...]` prints what the kernel of that name (see
-brute_force.scenes) is compiled to while every hook of all absent effects, and of those named, is
+As a program, `machine_code.py KERNEL [EFFECT ...]` prints the machine code of the kernel of that
+name (see brute_force.scenes) while every hook of all absent effects, and of those named, is
 poisoned.
 """
 
@@ -16,24 +15,31 @@ from brute_force import begin, run, settings
 from numba.core.registry import cpu_target
 
 from roughgas.compiling.jit import jit
-from roughgas.effects import KINDS
+from roughgas.effects import EFFECTS
 from roughgas.kernel.hooks import Hooks
 from roughgas.kernel.record import record
 
 
-def sections(kernel, more=None):
-    """The instructions and constants of a kernel, as bytes by the name of their section; `more` are
-    other settings of the experiment.
+def sections(kernel, extra=None):
+    """Return the instructions and constants of a kernel, as bytes by the name of their section;
+    `extra` are other settings of the experiment.
 
     Without texts, which hold names of functions, into which numba writes how many it has compiled.
     """
-    scene, state = begin(settings(kernel) | (more or {}), 0.9, -1.0)
+    scene, state = begin(settings(kernel) | (extra or {}), 0.9, -1.0)
     run(state, scene, 0)
-    wanted = numba.typeof(state), numba.typeof(scene)
-    signature = next(one for one in record.dispatcher.signatures if one[:2] == wanted)
+    argument_types = numba.typeof(state), numba.typeof(scene)
+    signature = next(
+        signature_or_section
+        for signature_or_section in record.dispatcher.signatures
+        if signature_or_section[:2] == argument_types
+    )
     codegen = cpu_target.target_context.codegen()
     (_, _, (compiled, _)), *_ = record.dispatcher._cache.read(signature, codegen)
-    found = {one.name(): one.data() for one in llvm.ObjectFileRef.from_data(compiled).sections()}
+    found = {
+        signature_or_section.name(): signature_or_section.data()
+        for signature_or_section in llvm.ObjectFileRef.from_data(compiled).sections()
+    }
     kinds = (b".text", b".ltext", b".rodata.cst")
     return {name.decode(): bits for name, bits in found.items() if name and name.startswith(kinds)}
 
@@ -60,7 +66,9 @@ def poison(kind):
 if __name__ == "__main__":
     kernel, *others = sys.argv[1:]
     effects = settings(kernel)["effects"]
-    absent = {*KINDS.values()} - {KINDS[name] for name in effects}  # walls of all sides are a kind
-    for kind in absent | {KINDS[name] for name in others}:
+    absent = {*EFFECTS.values()} - {
+        EFFECTS[name] for name in effects
+    }  # walls of all sides are a kind
+    for kind in absent | {EFFECTS[name] for name in others}:
         poison(kind)
     print(json.dumps(checksums(kernel)))

@@ -1,10 +1,10 @@
-"""Which tests notice a fault: `python -m tests.mutants [ROOM ...]` makes one after the other.
+"""Faults that the tests notice: `python -m tests.mutants [ROOM ...]` makes one after the other.
 
-mutants.json has the faults: a text in the source, what it is changed to, and the room that it is
-in. Each is made in a copy of the project, and there the test runs that noticed it last time, and if
-that passes the tests of the room, until one fails. A line is printed for each, and the exit status
-is 1 if a fault passes that is not known to. `before` and `after` in the file are what failed before
-and after the rooms were moved.
+mutants.json has the faults: a text in the source, its replacement, and its room. Each is made in a
+copy of the project, and there the test runs that noticed it last time, and if that passes the tests
+of the room, until one fails. A line is printed for each, and the exit status is 1 if a fault passes
+that is not listed so. `before` and `after` in the file are what failed before and after the rooms
+were moved.
 """
 
 import argparse
@@ -23,10 +23,10 @@ COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "
 COPIED += ("studies", "tests")
 QUICK = "not (slow or remedy or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
-    "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
-    "cli": ["habits/test_surroundings.py", "test_refusals.py"],
+    "base": ["data", "cli/test_process.py", "robustness/test_surroundings.py"],
+    "cli": ["robustness/test_surroundings.py", "test_refusals.py"],
     "config": ["test_refusals.py"],
-    "doctor": ["habits/test_surroundings.py"],
+    "doctor": ["robustness/test_surroundings.py"],
     "effects": [
         "kernel/test_against_brute_force.py",
         "kernel/test_collision_rule.py",
@@ -40,28 +40,28 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
 
 
 def tests_of(room):
-    own = [room] if (ROOT / "tests" / room).is_dir() else []
-    return [f"tests/{name}" for name in own + ELSEWHERE.get(room, [])]
+    folders = [room] if (ROOT / "tests" / room).is_dir() else []
+    return [f"tests/{name}" for name in folders + ELSEWHERE.get(room, [])]
 
 
-def place(copy, old):
+def file_to_change(copy, old):
     """The only file of the source and of studies that holds a text, which it holds once."""
-    every = [path for part in ("src", "studies") for path in (copy / part).rglob("*.py")]
-    found = [path for path in every if old in path.read_text()]
-    if len(found) != 1 or found[0].read_text().count(old) != 1:
+    sources = [path for root in ("src", "studies") for path in (copy / root).rglob("*.py")]
+    matches = [path for path in sources if old in path.read_text()]
+    if len(matches) != 1 or matches[0].read_text().count(old) != 1:
         raise SystemExit(f"must stand once in the source: {old!r}")
-    return found[0]
+    return matches[0]
 
 
 def killer(copy, mutant):
     """The first test that fails with a fault, or None."""
-    path = place(copy, mutant["old"])
+    path = file_to_change(copy, mutant["old"])
     text = path.read_text()
     path.write_text(text.replace(mutant["old"], mutant["new"]))
     last = mutant["after"].partition("[")[0]
-    found = ("::" in last and failing(copy, [last])) or failing(copy, tests_of(mutant["room"]))
+    test = ("::" in last and failing(copy, [last])) or failing(copy, tests_of(mutant["room"]))
     path.write_text(text)
-    return found
+    return test
 
 
 def failing(copy, tests):
@@ -91,9 +91,9 @@ def main():
         for mutant in mutants:
             if rooms and mutant["room"] not in rooms:
                 continue
-            found = killer(copy, mutant)
-            missed += found is None and not mutant.get("survives", False)
-            print(f"{mutant['room']:11}{found or 'survives'}: {mutant['old']!r}", flush=True)
+            test = killer(copy, mutant)
+            missed += test is None and not mutant.get("survives", False)
+            print(f"{mutant['room']:11}{test or 'survives'}: {mutant['old']!r}", flush=True)
     return missed > 0
 
 

@@ -12,46 +12,78 @@ from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 
-from roughgas import accuracy, effects, observables
+from roughgas import effects, observables
 from roughgas.base import markdown
-from roughgas.claims import PAPER, evidence, paper
+from roughgas.base.fields import fields_of
+from roughgas.base.files import study_module
+from roughgas.claims import read_study, verdicts
 from roughgas.claims.numbers import filled
-from roughgas.config.schema import SAID, _legal, _schema
+from roughgas.config import json_schema
+from roughgas.config.json_schema import DESCRIBERS, legal_values
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
-from roughgas.data.variables import COOLING, GRID, POINT, SPIN
-from roughgas.effects.settings import Numbers, OfParticles, Word
+from roughgas.data.variables import COOLING, GRID_PLACEHOLDER, POINT, SPIN
+from roughgas.effects.species import PairSettings, RadiiSettings, SpeciesSettings
+from roughgas.results import row_verdicts
+from roughgas.results.comparison import read_rows
+from roughgas.results.row_counts import row_counts
 from roughgas.statistics import errors
-from roughgas.tasks import variables
+from roughgas.tasks import read_variables
 
+STUDIES = Path(__file__).parents[1] / "studies"
+PAPER = read_study(STUDIES / "paper", "The paper", ())
+JUDGES = study_module(STUDIES / "paper", "judges")
 DOCS = Path(__file__).parents[1] / "docs"
-RESULTS = DOCS / "results.md"
+RESULTS, EVIDENCE = DOCS / "results.md", DOCS / "evidence.md"
+EDITORS = Path(json_schema.__file__).with_name("config.schema.json")
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
-WRITTEN = "only roughgas writes it"  # what the schema says of keys that no configuration has
-DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), evidence)
-DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper, "MOST": paper}
+WRITTEN = "only roughgas writes it"  # the schema's description of keys that no configuration has
+DECIDES = dict.fromkeys(
+    ("AGREE", "DISAGREE", "TENDENCY", "EXCEPTIONS", "AGREE_RELATIVE", "DISAGREE_RELATIVE"), verdicts
+)
+DECIDES |= dict.fromkeys(("FALSE_DISCOVERIES", "TESTED_SHARE", "TESTED_SCALE"), row_verdicts)
+DECIDES |= {
+    "SIGNIFICANT": errors,
+    "POWER": errors,
+    "INTERMEDIATE": JUDGES,
+    "CONSIDERABLY": JUDGES,
+    "SHARE_FROM_AVERAGING": JUDGES,
+}
 """Tolerances of verdicts, and the module of each."""
 
 
 def tables():
     """Each table by its page and its name."""
-    found = {("claims", "tolerances"): _tolerances()}
+    by_page_and_name = {("evidence", "tolerances"): _tolerances()}
     whose = {False: "the paper", True: "ours"}
-    rows = ((f"`{s.name}`", whose[s.ours], s.criterion, s.fixed) for s in PAPER.statements)
-    found["claims", "paper"] = markdown(("statement", "of", "criterion", "fixed"), rows)
-    parts = _schema()["$defs"]
-    found["config", "file"] = _keys_of(_schema())
+    rows = ((f"`{s.name}`", whose[s.ours], s.criterion, s.fixed.text) for s in PAPER.statements)
+    by_page_and_name["evidence", "paper"] = markdown(
+        ("statement", "of", "criterion", "fixed"), rows
+    )
+    schema = json_schema.schema()
+    definitions = schema["$defs"]
+    by_page_and_name["config", "file"] = _keys_of(schema)
     for name in ("experiment", "sweep", "schedule", "stage"):
-        found["config", name] = _keys_of(parts[name])
-    found["config", "layer"] = _keys_of(parts["layer"], depth=2)
-    found["config", "accuracy"] = _keys_of(parts["accuracy"], depth=4)
-    found["effects", "effects"] = _effects()
-    found["observables", "observables"] = _observables()
-    found["data", "point"] = _variables("type units when", POINT, _units)
-    found["data", "reduced"] = _variables("units how", REDUCED, _units)
-    found["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
-    known = {name: variables(accuracy.VARIABLES, name) for name in accuracy.STUDIES}
-    return found | {("data", name): _variables("units", one) for name, one in known.items()}
+        by_page_and_name["config", name] = _keys_of(definitions[name])
+    by_page_and_name["config", "layer"] = _keys_of(definitions["layer"], depth=2)
+    by_page_and_name["config", "accuracy"] = _keys_of(definitions["accuracy"], depth=4)
+    by_page_and_name["effects", "effects"] = _effects()
+    for name, kind in OF_SPECIES.items():
+        by_page_and_name["effects", name] = _fields(kind)
+    by_page_and_name["observables", "observables"] = _observables()
+    by_page_and_name["data", "point"] = _variables("type units when", POINT, _units)
+    by_page_and_name["data", "reduced"] = _variables("units how", REDUCED, _units)
+    by_page_and_name["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
+    folder = DOCS.parent / "studies"
+    study_variables = {
+        name: read_variables(folder / "accuracy" / "variables.yaml", name)
+        for name in ("statistical", "models", "discretisation")
+    }
+    study_variables["coverage"] = read_variables(folder / "coverage" / "variables.yaml")
+    return by_page_and_name | {
+        ("data", name): _variables("units", described)
+        for name, described in study_variables.items()
+    }
 
 
 def written(page, name):
@@ -64,13 +96,17 @@ def write():
         path, begin = DOCS / f"{page}.md", BEGIN.format(name)
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace(begin + written(page, name) + END, begin + table + END))
-    RESULTS.write_text(quoted(), encoding="utf-8")
+    for page in (RESULTS, EVIDENCE):
+        page.write_text(with_numbers(page), encoding="utf-8")
+    EDITORS.write_text(json_schema.text(), encoding="utf-8")
 
 
-def quoted():
-    """The page of results with the numbers of the last results."""
-    numbers = json.loads((DOCS.parent / "figures" / "numbers.json").read_text(encoding="utf-8"))
-    return filled(RESULTS.read_text(encoding="utf-8"), numbers, marks=True)
+def with_numbers(page):
+    """Return the text of a page with the numbers of the last results before its marks."""
+    figures = DOCS.parent / "figures"
+    numbers = json.loads((figures / "numbers.json").read_text(encoding="utf-8"))
+    numbers |= row_counts(read_rows(figures / "evidence.csv"))
+    return filled(page.read_text(encoding="utf-8"), numbers, marks=True)
 
 
 # ---------------------------------------------------------------------- claims
@@ -78,20 +114,22 @@ def quoted():
 
 def _tolerances():
     """Each tolerance with its value, and what its docstring says."""
-    found = ((name, getattr(of, name), said(of)[name]) for name, of in DECIDES.items())
-    rows = [(f"`{name}`", f"{value:.3g}", about) for name, value, about in found]
+    constants = (
+        (name, getattr(of, name), constant_docstrings(of)[name]) for name, of in DECIDES.items()
+    )
+    rows = [(f"`{name}`", f"{value:.3g}", docstring) for name, value, docstring in constants]
     return markdown(("tolerance", "value", "what it is, and why so large"), rows)
 
 
-def said(module):
+def constant_docstrings(module):
     """The docstring of each constant of a module, as one line."""
     body = ast.parse(inspect.getsource(module)).body
     return {
-        ast.unparse(one.targets[0]): " ".join(text.value.value.split())
-        for one, text in pairwise(body)
-        if isinstance(one, ast.Assign)
-        and isinstance(text, ast.Expr)
-        and isinstance(text.value, ast.Constant)
+        ast.unparse(assignment.targets[0]): " ".join(docstring.value.value.split())
+        for assignment, docstring in pairwise(body)
+        if isinstance(assignment, ast.Assign)
+        and isinstance(docstring, ast.Expr)
+        and isinstance(docstring.value, ast.Constant)
     }
 
 
@@ -102,67 +140,80 @@ def _keys_of(schema, depth=1):
     return markdown(("key", "it must", "meaning"), _rows(schema, "", depth))
 
 
-def _is_written(about):
-    return WRITTEN in about.get("description", "")
+def _is_written(schema):
+    return WRITTEN in schema.get("description", "")
 
 
 def _rows(schema, above, depth):
-    """A row for each key of a mapping, and for those of the mappings in it, down to a depth."""
-    keys = [(key, one) for key, one in schema["properties"].items() if not _is_written(one)]
-    keys += [(one["title"], one) for one in schema.get("patternProperties", {}).values()]
-    for key, about in keys:
-        found = _resolved(about)
-        legal = _legal(found) if any(keyword in found for keyword in SAID) else ""
-        yield f"`{above}{key}`", legal, found.get("description", "").replace("|", r"\|")
-        if depth > 1 and "properties" in found:
-            yield from _rows(found, f"{above}{key}.", depth - 1)
+    """Generate a row for each key of a mapping and of its inner mappings, down to a depth."""
+    keys = [(key, entry) for key, entry in schema["properties"].items() if not _is_written(entry)]
+    keys += [(entry["title"], entry) for entry in schema.get("patternProperties", {}).values()]
+    for key, entry_schema in keys:
+        resolved = _resolved(entry_schema)
+        legal = legal_values(resolved) if any(keyword in resolved for keyword in DESCRIBERS) else ""
+        yield f"`{above}{key}`", legal, resolved.get("description", "").replace("|", r"\|")
+        if depth > 1 and "properties" in resolved:
+            yield from _rows(resolved, f"{above}{key}.", depth - 1)
 
 
 def _resolved(schema):
     """A definition in place of a reference to it; what stands beside the reference comes first."""
     if "$ref" not in schema:
         return schema
-    found = _schema()
+    definition = json_schema.schema()
     for step in schema["$ref"].removeprefix("#/").split("/"):
-        found = found[step]
-    return _resolved(found) | {key: one for key, one in schema.items() if key != "$ref"}
+        definition = definition[step]
+    return _resolved(definition) | {
+        key: keyword_value for key, keyword_value in schema.items() if key != "$ref"
+    }
 
 
 # ---------------------------------------------------------------------- effects and observables
 
 
 def _effects():
-    """What effects there are; those alike share a row."""
+    """Return the table of effects; effects with equal descriptions share a row."""
     alike = {}
-    for name, kind in effects.KINDS.items():
-        there = [f"`{hook}`" for hook, own in kind.hooks._asdict().items() if own]
-        described = "<br>".join(_parameter(key, one) for key, one in kind.parameters.items())
-        alike.setdefault((kind.__doc__, described, ", ".join(there)), []).append(f"`{name}`")
+    for name, kind in effects.EFFECTS.items():
+        hooks = [f"`{hook}`" for hook, function in kind.hooks._asdict().items() if function]
+        described = "<br>".join(map(_field, fields_of(kind.settings)))
+        alike.setdefault((kind.__doc__, described, ", ".join(hooks)), []).append(f"`{name}`")
     head = ("effect", "what it does", "parameters", "part in the kernel")
-    return markdown(head, ((", ".join(names), *about) for about, names in alike.items()))
+    return markdown(head, ((", ".join(names), *cells) for cells, names in alike.items()))
 
 
-def _parameter(key, one):
-    about = one.number.description if isinstance(one, OfParticles) else one.description
-    if isinstance(one, Word):
-        legal = " or ".join(f"`{word}`" for word in one.words)
-    elif isinstance(one, Numbers):
-        legal = f"{one.fewest} to {one.most} numbers in {one.interval}"
-    elif isinstance(one, OfParticles):
-        legal = f"in {one.number.interval} or `particles`"
-    else:
-        legal = f"in {one.interval}"
-    # a default that is no number of its own, as that of below_r, is described in words
-    given = "" if one.default in (None, math.inf) else f", {one.default} if not given"
-    return f"`{key}` {legal}{given}: {about.removesuffix('.')}"
+OF_SPECIES = {"species": SpeciesSettings, "radii": RadiiSettings, "pairs": PairSettings}
+
+
+def _fields(kind):
+    """A row for each field of a struct of settings."""
+    head = ("key", "it must", "if not given", "meaning")
+    return markdown(
+        head, ((f"`{f.name}`", f.legal, _default(f), f.description) for f in fields_of(kind))
+    )
+
+
+def _default(field):
+    if field.required:
+        return "(must be given)"
+    return "" if field.default is None else f"{field.default:g}"
+
+
+def _field(field):
+    """Return the legal values, the default and the meaning of a field of settings."""
+    # a default that is no number, such as the default of below_r, is described in words
+    default = "" if field.default in (None, math.inf) else f", {field.default} if not given"
+    legal = field.legal.removeprefix("be ").replace(" or be particles", " or `particles`")
+    return f"`{field.name}` {legal}{default}: {field.description.removesuffix('.')}"
 
 
 def _observables():
-    """What observables there are, and what lands in a dataset."""
+    """Return the tables of observables and of their variables."""
     settings, rows = [], []
-    for name, kind in observables.KINDS.items():
-        told = "<br>".join(_setting(key, one) for key, one in kind.settings.items())
-        settings.append((f"`{name}`", kind.__doc__, told, _window(kind)))
+    for name, kind in observables.OBSERVABLES.items():
+        fields = [field for field in fields_of(kind.settings) if field.name != "every"]
+        described = "<br>".join(map(_field, fields))
+        settings.append((f"`{name}`", kind.__doc__, described, _window(kind)))
         for variable, v in kind.variables.items():
             dims, when = ", ".join(v.dims), ", ".join(v.when)
             rows.append((f"`{name}`", f"`{variable}`", dims, v.units, when, v.long_name))
@@ -172,18 +223,13 @@ def _observables():
 
 
 def _window(kind):
-    """The e-folds that a kind of observable needs, of flows, too, and where they are not known."""
+    """Return the window that an observable needs, in e-folds, and the cases without a known
+    window."""
     if math.isinf(kind.relaxations):
         return "not known"
-    unknown = ["in beds"] * (not kind.beds) + [f"of `{name}`" for name in kind.doubtful]
-    text = f"{kind.relaxations:g}{' of flows, too' * kind.of_flow}"
+    unknown = ["in beds"] * (not kind.valid_in_beds) + [f"of `{name}`" for name in kind.unvalidated]
+    text = f"{kind.relaxations:g}{' of flows, too' * kind.depends_on_flow}"
     return f"{text}; not known {', '.join(unknown)}" if unknown else text
-
-
-def _setting(key, one):
-    legal = getattr(one, "interval", None) or f"[{one.low}, {one.high}]"
-    given = "" if one.default is None else f", {one.default:g} if not given"
-    return f"`{key}` in {legal}{given}: {one.description.removesuffix('.')}"
 
 
 # ---------------------------------------------------------------------- variables of datasets
@@ -199,30 +245,33 @@ def documented(page, name):
 
 def check_study(name, data):
     """Whether the combined data of a study hold all that the page documents, and nothing else."""
-    found = {key: (one.dims, one.attrs["long_name"]) for key, one in data.variables.items()}
-    assert documented("data", name) == found
+    present = {
+        key: (variable.dims, variable.attrs["long_name"])
+        for key, variable in data.variables.items()
+    }
+    assert documented("data", name) == present
 
 
-def _variables(columns, known, units=attrgetter("units")):
-    """A row for each variable: its dimensions, these columns, and what it means."""
+def _variables(columns, variables, units=attrgetter("units")):
+    """Return a table of variables: dimensions, these columns, and meaning."""
     columns = columns.split()
     cell = {"type": lambda v: v.dtype, "units": units, "how": _combination}
     cell["when"] = lambda v: ", ".join(v.when) or "always"
     rows = [
         (f"`{name}`", ", ".join(v.dims), *(cell[column](v) for column in columns), v.long_name)
-        for name, v in known.items()
+        for name, v in variables.items()
     ]
     return markdown(("variable", "dimensions", *columns, "meaning"), rows)
 
 
 def _combination(v):
-    if GRID not in v.dims:
+    if GRID_PLACEHOLDER not in v.dims:
         return "axis"
     return f"{v.over_seeds} over seeds" if v.over_seeds else "derived"
 
 
 def _units(v):
-    """Of a driven gas; after a semicolon of a cooling one, where it has others."""
+    """Return the units in a driven gas; after a semicolon in a cooling gas, if they differ."""
     gases = (True,) if COOLING in v.when else (False,)
     gases = (False, True) if set(v.when) <= {SPIN} else gases
     return "; ".join(dict.fromkeys(v.units_of(cooling) for cooling in gases))

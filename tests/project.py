@@ -1,4 +1,4 @@
-"""A copy of the project, in which Snakemake itself is run on a tiny scale."""
+"""A copy of the project, where Snakemake itself runs at a tiny scale."""
 
 import copy
 import json
@@ -11,13 +11,13 @@ from pathlib import Path
 
 import snakemakes
 
-from roughgas.config.reading import read_yaml
-from roughgas.results.products import PROJECT
+from roughgas.base.reading import read_yaml
+from roughgas.results.crate import PROJECT_FILES
 
 ROOT = Path(__file__).parent.parent
-COPIED = (*PROJECT, "rules", "profiles", "src", "studies")
+COPIED = (*PROJECT_FILES, "rules", "profiles", "src", "studies", "workflow")
 COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
-COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "remembered", "schedules"))
+COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "yaml_cache", "schedules"))
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
 STEADY = {"equilibrate": 20, "measure": 20}
 TINY = {
@@ -34,6 +34,13 @@ TINY = {
     },
     "clustering.gas": {"particles": 40, "box": [40, 40]},
     "clustering.tasks": {"collisions": 20, "frames": 10, "window": 30},
+    "transport.tasks": {
+        "spheres": [0, 0.4],
+        "disks": [0],
+        "equilibrium": {"length": 200, "blocks": 4},
+        "forced": {"particles": 50, "length": 20, "q": [0.4]},
+        "driven": {"particles": 50, "windows": 20, "r": ["0.9"], "beta": ["1"]},
+    },
 }
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
@@ -42,6 +49,7 @@ OF_FLUXES = ("", "_fluxes", "_between_walls")
 ELASTIC = [f"{kind}{of}" for kind in ("disks", "spheres") for of in OF_FLUXES]
 ELASTIC += ["spheres_far_walls"]
 MPEMBA = ["hot", "cold", "overshoot_hot", "overshoot_cold"]
+MATERIALS = ["", "_smoother", "_smoother_inelastic", "_less_inelastic"]
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
     "spheres.cooling_spheres": {},
     "spheres.sheared_spheres": {},
@@ -65,10 +73,15 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "couette.couette": {},
     "megias_santos.dilute": {"thermostat.spin_share": ["0.5"]},
     **{
-        f"mpemba.{name}": {} for name in (*MPEMBA, *(f"{one}_smoother" for one in MPEMBA), "memory")
+        f"mpemba.{name}": {}
+        for name in (*(pair + suffix for suffix in MATERIALS for pair in MPEMBA), "memory")
     },
     **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ELASTIC},
     **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ELASTIC},
+    **{
+        f"transport.rough_spheres_fluxes_{kind}": {"r": ["1"], "beta": ["1"]}
+        for kind in ("many", "dense")
+    },
     "transport.heated": {},
     "patterns.layers": {"seeds": 1},  # of seven cases
     "transport.strained": {"shear.velocity": ["0.4"]},
@@ -89,7 +102,7 @@ for name, box in (
         if "transport" in name
     ),
 ):
-    TINY[name] |= {"particles": 10, "box": box}
+    TINY[name] |= {"particles": 10, "box": box, "packing": None}
 for name in (name for name in BEYOND if name.startswith("mpemba.")):
     TINY[name] |= {"particles": 20, "schedule": {"sample_every": 40}}
 TINY["patterns.layers"] |= {
@@ -98,7 +111,7 @@ TINY["patterns.layers"] |= {
     "observables": {"pattern": {"cells": 4}},
 }
 for name in BEYOND:
-    if name.endswith(("strained", "fluxes", "between_walls", "far_walls")):
+    if "fluxes" in name or name.endswith(("strained", "between_walls", "far_walls")):
         TINY[name]["schedule"] = {"equilibrate": 100, "measure": 1000, "sample_every": 10}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
@@ -119,9 +132,9 @@ class Project:
     def copy_to(self, folder):
         """Another such project, as far run as this one."""
         shutil.copytree(self.folder, folder)
-        other = copy.copy(self)
-        other.folder = folder
-        return other
+        project = copy.copy(self)
+        project.folder = folder
+        return project
 
     def configure(self, change):
         """Let `change` edit config.yaml, given as a dictionary."""
@@ -149,7 +162,7 @@ class Project:
         return snakemakes.run(self.folder, self.environment(), arguments)
 
     def environment(self):
-        """That of this process, but that Python finds the copy of the package."""
+        """Return this process's environment with the copied package on Python's path."""
         return os.environ | {"PYTHONPATH": str(self.folder / "src")}
 
     def succeed(self, *arguments):
@@ -173,11 +186,11 @@ class Project:
 
 
 def jobs_by_rule(output):
-    """Number of jobs of each rule that a dry run lists; those that make several points are counted
-    together, as `seeds`."""
+    """Return the number of jobs of each rule in a dry run; all blocks of points count as
+    `seeds`."""
     table = output.rsplit("Job stats:", 1)[1].split("total")[0]
-    found = {}
+    numbers = {}
     for rule, count in re.findall(r"^([\w.]+) +(\d+)$", table, re.M):
-        name = re.sub(r"block_\d+", "seeds", rule)
-        found[name] = found.get(name, 0) + int(count)
-    return found
+        name = re.sub(r"[\w.]+_block\d+", "seeds", rule)
+        numbers[name] = numbers.get(name, 0) + int(count)
+    return numbers

@@ -41,11 +41,11 @@ def server():
 
 
 def become_snakemake(folder, environment, arguments, output):
-    """Leave nothing of the server's but what it has imported, and run Snakemake."""
+    """Leave the server's session, keep its imports, and run Snakemake."""
     from snakemake.cli import main
 
-    own = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-    elsewhere = [path for path in sys.path[1:] if path not in own]
+    python_path = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    elsewhere = [path for path in sys.path[1:] if path not in python_path]
     os.setsid()
     os.chdir(folder)
     os.environ.clear()
@@ -53,8 +53,11 @@ def become_snakemake(folder, environment, arguments, output):
     paths = environment.get("PYTHONPATH", "").split(os.pathsep)
     sys.path[:] = [folder, *filter(None, paths), *elsewhere]
     sys.argv[1:] = arguments
-    for source, own in ((os.open(os.devnull, os.O_RDONLY), (0,)), (os.open(output, 1), (1, 2))):
-        for stream in own:
+    for source, python_path in (
+        (os.open(os.devnull, os.O_RDONLY), (0,)),
+        (os.open(output, 1), (1, 2)),
+    ):
+        for stream in python_path:
             os.dup2(source, stream)
     main(arguments)
 
@@ -67,33 +70,33 @@ def prepare():
 
     Executor.SLEEPING_TIME = 0.0  # a tenth of a second for each job else, for times in full seconds
     read_yaml = read_yaml_once()
-    gc.freeze()  # or each fork would take long to free what it shares
+    gc.freeze()  # or each fork would take long to free shared objects
     return read_yaml
 
 
 def read_yaml_once():
-    """Let forks know the studies' YAML, which takes half of a dry run to read; return what reads
-    another file for them."""
-    from remembered import remember_yaml
+    """Let forks know the studies' YAML, which takes half of a dry run to read; return the
+    function that reads another file for them."""
+    from yaml_cache import remember_yaml
 
+    from roughgas.base.reading import read_yaml
     from roughgas.config import load
-    from roughgas.config.reading import read_yaml
 
     remember_yaml()
     load(ROOT / "config.yaml")
-    for name in [one for one in sys.modules if one.partition(".")[0] == "roughgas"]:
-        del sys.modules[name]  # a fork imports the package that it is told to
+    for name in [module for module in sys.modules if module.partition(".")[0] == "roughgas"]:
+        del sys.modules[name]  # a fork imports the package on its own path
     return read_yaml
 
 
 if __name__ == "__main__":
     read_yaml = prepare()
     for line in sys.stdin:
-        folder, *others = json.loads(line)
+        folder, *parameters = json.loads(line)
         with contextlib.suppress(Exception):  # which the fork will meet
             read_yaml(Path(folder, "config.yaml"))
         child = os.fork()
         if not child:
-            become_snakemake(folder, *others)
+            become_snakemake(folder, *parameters)
             sys.exit()
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.data.reduced import third_axis
+from roughgas.data.variables import third_axis
 from roughgas.theory.prediction import predicted_ratio, species_at
 
 BETA = (-0.95, *(round(-0.9 + 0.1 * step, 1) for step in range(20)))
@@ -24,11 +24,11 @@ def reduced(
     about: dict[str, object] | None = None,
     **others: float | np.ndarray,
 ) -> xr.Dataset:
-    """R = theory + shift(r, beta) + noise of standard error `error`; `others` set more of it.
+    """R = theory + shift(r, beta) + noise of standard error `error`; `variables` are set, too.
 
     `third`: a parameter that is swept besides, such as "friction.mu", with its values; `shift` then
-    gets these, too. `about` are more attributes. Theory is that of the energy books where `others`
-    have an input_spin_share.
+    gets these, too. `about` are further attributes. With `input_spin_share` among the variables,
+    theory takes the share of rotation from the energy balance.
     """
     spheres = experiment.endswith("spheres")
     attributes = {
@@ -83,27 +83,27 @@ HALF = [
 
 
 def mixed(experiment, third, shift=0.0, hotter=1.0, species=HALF, **how) -> xr.Dataset:
-    """A mixture: R of each species is theory + `shift`, and T_2/T_1 `hotter` times that of theory,
-    or of a driven gas that itself."""
-    known = {"species": species, "species_pairs": [], "volume": 1e4}
-    about = {"species_json": json.dumps(known)}
-    data = reduced(experiment, third=third, about=about, **how)
+    """A mixture: R of each species is theory + `shift`, and T_2/T_1 is `hotter` times theory,
+    or `hotter` itself in a driven gas."""
+    mixture = {"species": species, "species_pairs": [], "volume": 1e4}
+    attributes = {"species_json": json.dumps(mixture)}
+    data = reduced(experiment, third=third, about=attributes, **how)
     name, shape = third_axis(data.attrs), (*data.R.shape, len(species))
     T_tr, R = np.ones(shape), np.empty(shape)
     for index in np.ndindex(data.R.shape):
-        here = data.isel(dict(zip(data.R.dims, index, strict=True)))
-        place = {one: here[one].item() for one in ("r", "beta", name)}
+        point = data.isel(dict(zip(data.R.dims, index, strict=True)))
+        coordinates = {key: point[key].item() for key in ("r", "beta", name)}
         measured = np.array([1.0, hotter])[: len(species)]
-        state = species_at(data.attrs, place, measured)
+        state = species_at(data.attrs, coordinates, measured)
         T_tr[index], R[index] = state.T_tr, state.R + shift
     if data.attrs["theory"] == "K":
         T_tr[..., -1] *= hotter
     values = {"E_trans_species": T_tr / 2, "R_species": R, "E_rot_species": T_tr * R / (1 - R) / 2}
     values["T_ratio_species"] = T_tr / T_tr[..., :1]
-    values |= {f"{one}_stderr": np.full(shape, 0.001) for one in values}
+    values |= {f"{key}_stderr": np.full(shape, 0.001) for key in values}
     dims = (*data.R.dims, "species")
-    data = data.assign({one: (dims, value) for one, value in values.items()})
-    return data.assign_coords(species=[one["name"] for one in species])
+    data = data.assign({key: (dims, value) for key, value in values.items()})
+    return data.assign_coords(species=[key["name"] for key in species])
 
 
 def averaged(
@@ -115,11 +115,11 @@ def averaged(
     Lun's formula at the correlation that contacts have; the ratio of means is half-way from R."""
     beta, _ = np.meshgrid(data.beta, data.r)
     c = correlation(beta)
-    found = theory.correlated_ratio(beta, data.attrs["inertia"], c) * (1.0 + left)
+    ratio = theory.correlated_ratio(beta, data.attrs["inertia"], c) * (1.0 + left)
     values = {
-        "R_ratio_of_means": (data.R.values + found) / 2,
+        "R_ratio_of_means": (data.R.values + ratio) / 2,
         "R_ratio_of_means_stderr": 0.001,
-        "R_collisional": found + 3e-4 * np.random.default_rng(1).standard_normal(beta.shape),
+        "R_collisional": ratio + 3e-4 * np.random.default_rng(1).standard_normal(beta.shape),
         "R_collisional_stderr": 3e-4,
         "R_collisional_dof": 100.0,
         "contact_correlation": c,
@@ -130,15 +130,17 @@ def averaged(
 
 
 def viscoelastic(shift: float = 0.0, exponent: float = 5 / 3) -> xr.Dataset:
-    """A cooling gas of viscoelastic disks: R is that of the present restitution, + `shift`."""
-    about = {"r_at_speed": 1.0, "packing": 0.0126}
-    data = reduced("cooling_viscoelastic", r=(0.9,), beta=(-1.0, 0.0, 1.0), about=about, error=1e-6)
+    """A cooling gas of viscoelastic disks: R of the present restitution, + `shift`."""
+    attributes = {"r_at_speed": 1.0, "packing": 0.0126}
+    data = reduced(
+        "cooling_viscoelastic", r=(0.9,), beta=(-1.0, 0.0, 1.0), about=attributes, error=1e-6
+    )
     data["R"] = data.R.fillna(0.0)  # of smooth disks, whose spins nothing changes, theory has none
     time = np.geomspace(1.0, 1e6, 50)
     energy = np.broadcast_to((1.0 + time / 30.0) ** -exponent, (1, 3, 50))
     R = theory.viscoelastic_ratio(energy, 0.9, data.beta.values[:, None]) + shift
-    made = np.broadcast_to(np.arange(1.0, 51.0), energy.shape)
-    series = {"E_trans_series": energy, "R_series": R, "collisions_per_particle": made}
+    collisions = np.broadcast_to(np.arange(1.0, 51.0), energy.shape)
+    series = {"E_trans_series": energy, "R_series": R, "collisions_per_particle": collisions}
     series["time_series"] = np.broadcast_to(time, energy.shape)
     scalars = {"decay_exponent": exponent, "decay_exponent_stderr": 1e-4}
     scalars |= {"measured_from": 10.0, "plateau_end": 50.0}
@@ -148,6 +150,6 @@ def viscoelastic(shift: float = 0.0, exponent: float = 5 / 3) -> xr.Dataset:
 
 
 def couette(shift: float = 0.0) -> xr.Dataset:
-    """A gas between sliding walls, whose R is that of theory, + `shift`."""
+    """A gas between sliding walls, whose R is theory's, + `shift`."""
     data = reduced("couette", lambda r, beta: shift + 0.0 * beta, r=(0.9,), error=1e-6)
     return data.assign(shear_rate=data.R.copy(data=np.full(data.R.shape, 0.04)))

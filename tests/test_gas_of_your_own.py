@@ -1,19 +1,20 @@
-"""`roughgas.gas`: what a study's code sees of a gas, and how it keeps one in a file."""
+"""`roughgas.gas`: the gas that a study's code sees, and its file."""
 
 import math
 
 import numpy as np
 import pytest
 from brute_force import settings
+from raw import build, start_gas
 
-from roughgas.gas import Gas, InputError, UnusableCheckpoint, build, ratio
+from roughgas.gas import InputError, UnusableCheckpoint, ratio
 
 GAS = settings("gas", 20, [25, 25])
 BED = settings("bed", 20, [12.5, "open"])
 
 
 def started(experiment, seed=1):
-    return Gas.start(build(experiment, 0.9, 0.2), experiment, np.random.default_rng(seed))
+    return start_gas(build(experiment, 0.9, 0.2), experiment, np.random.default_rng(seed))
 
 
 def test_positions_velocities_and_spins_are_copies_of_the_present():
@@ -54,16 +55,16 @@ def test_a_restored_gas_goes_on_with_the_same_bits(tmp_path):
         gas.cool(gas.count(4))
         return ratio(gas.energies(gas.in_collisions(gas.count(1), 40)))
 
-    whole, saved = started(GAS), tmp_path / "gas.npz"
-    whole.thermalise(5)
-    whole.save(saved, "mine", {"seen": np.arange(3.0)})
-    costs = whole.recorder.collisions
-    expected = go_on(whole)
+    uninterrupted, saved = started(GAS), tmp_path / "gas.npz"
+    uninterrupted.thermalise(5)
+    uninterrupted.save(saved, "mine", {"seen": np.arange(3.0)})
+    costs = uninterrupted.costs.collisions
+    expected = go_on(uninterrupted)
     with pytest.raises(UnusableCheckpoint, match="other settings"):
         started(GAS).restore(saved, "another")
     with pytest.raises(FileNotFoundError):
         started(GAS).restore(tmp_path / "none.npz", "mine")
-    other = started(GAS, seed=2)
-    assert np.array_equal(other.restore(saved, "mine")["seen"], np.arange(3.0))
-    assert other.recorder.collisions == costs
-    assert np.array_equal(go_on(other), expected)
+    another_seed = started(GAS, seed=2)
+    assert np.array_equal(another_seed.restore(saved, "mine")["seen"], np.arange(3.0))
+    assert another_seed.costs.collisions == costs
+    assert np.array_equal(go_on(another_seed), expected)

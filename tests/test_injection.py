@@ -9,16 +9,17 @@ from html import unescape
 from pathlib import Path
 
 import pytest
+from raw import provenance
+from schedules import TINY
 from show.page.conftest import write
 from tests.entry import main
 from tests.files import point
 
 from roughgas.base import InputError, in_csv, markdown
-from roughgas.config import schema
+from roughgas.config import WrittenConfiguration
 from roughgas.data.point import write_point
 from roughgas.results.reduce import reduce_points
 from roughgas.show.pages import policy
-from roughgas.simulation.points import provenance
 
 SCRIPT = "<script>alert(1)</script>"
 EVIL = [SCRIPT, "<!--<script>", "\"'`", "$(touch owned) `touch owned` ; touch owned", "a\nb"]
@@ -27,15 +28,15 @@ FORMULAS = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "\t=1"]
 RULES = sorted((Path(__file__).parents[1] / "rules").glob("*.smk"))
 
 
-def made(**about):
+def point_with(**changes):
     settings = {"experiment_json": '{"particles": 5, "box": [8, 8], "effects": {}}', "command": ""}
-    return point()._replace(attributes=point().attributes | settings | about)
+    return point()._replace(attributes=point().attributes | settings | changes)
 
 
 def page_of(folder, text):
     """The page of points whose command, scale and label are this text."""
-    about = {"command": text, "scale": text, "r_label": text}
-    paths = [write(folder, "sheared", "0.9", "0.5", seed, **about) for seed in (1, 2)]
+    attributes = {"command": text, "scale": text, "r_label": text}
+    paths = [write(folder, "sheared", "0.9", "0.5", seed, **attributes) for seed in (1, 2)]
     reduce_points(paths, folder / "sheared.nc")
     arguments = ["explore", str(folder / "sheared.nc"), "--points", str(folder)]
     assert main([*arguments, "-o", str(folder / "page.html")]) == 0
@@ -75,7 +76,7 @@ def test_documents_run_nothing_and_load_nothing(tmp_path, text):
 @pytest.mark.parametrize("text", FORMULAS)
 def test_no_text_in_a_table_is_a_formula(tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
-    write_point("point.nc", made(scale=text, command=text, experiment=text))
+    write_point("point.nc", point_with(scale=text, command=text, experiment=text))
     reduce_points(["point.nc"], "all.nc")
     assert main(["table", "all.nc", "-o", "R.csv"]) == 0
     with open("R.csv", newline="", encoding="utf-8") as lines:
@@ -89,22 +90,22 @@ def test_names_that_become_parts_of_commands_are_words(name):
     """Scales and experiments, which stand in rules' commands as they are."""
     settings = {"scale": "paper", "experiments": {name: {}}, "scales": {"paper": {}}}
     with pytest.raises(InputError, match="must consist of lower-case letters"):
-        schema.check(settings)
+        WrittenConfiguration(settings).check("config.yaml")
 
 
 @pytest.mark.parametrize("text", EVIL)
 def test_a_dataset_says_a_command_that_a_shell_reads_as_it_was_meant(tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
-    settings = {"particles": 5, "effects": {}, "note": text}
-    about = provenance("gas", settings, ("0.9", "0", "1"), "paper", f"{text}.nc")
-    said = subprocess.run(
-        ["sh", "-c", f"printf '%s\\0' {about['command']}"],
+    settings = TINY | {"note": text}
+    attributes = provenance("gas", settings, ("0.9", "0", "1"), "paper", f"{text}.nc")
+    completed = subprocess.run(
+        ["sh", "-c", f"printf '%s\\0' {attributes['command']}"],
         capture_output=True,
         text=True,
         check=True,
     )
-    assert said.stdout.split("\0")[:-1] == shlex.split(about["command"])
-    assert shlex.split(about["command"])[-1] == f"{text}.nc"
+    assert completed.stdout.split("\0")[:-1] == shlex.split(attributes["command"])
+    assert shlex.split(attributes["command"])[-1] == f"{text}.nc"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -114,4 +115,9 @@ def test_everything_is_quoted_in_every_command_of_a_rule():
     commands = re.findall(r"^ +shell:\n((?:\s+(?:#.*|\".*\")\n)+)", text, re.M)
     placeholders = [re.findall(r"\{.*?\}", command) for command in commands]
     assert len(commands) == len(re.findall("^ +shell:", text, re.M)) > 20 and all(placeholders)
-    assert [one for some in placeholders for one in some if not one.endswith(":q}")] == []
+    assert [
+        placeholder
+        for group in placeholders
+        for placeholder in group
+        if not placeholder.endswith(":q}")
+    ] == []

@@ -1,4 +1,4 @@
-"""The faults that `python -m tests.mutants` makes are still those of the source."""
+"""The texts that `python -m tests.mutants` replaces are in the source."""
 
 import json
 
@@ -9,4 +9,4 @@ def test_the_text_of_each_fault_stands_once_in_the_source():
     faults = json.loads((mutants.ROOT / "tests" / "mutants.json").read_text())
     assert faults
     for fault in faults:
-        mutants.place(mutants.ROOT, fault["old"])  # exits where it does not
+        mutants.file_to_change(mutants.ROOT, fault["old"])  # exits where it does not

@@ -1,5 +1,5 @@
-"""Bad input ends in one line that names the key, the value and what is legal: refusals.txt, where
-each row is a call and how its line begins; "..." stands for anything."""
+"""Bad input ends in one line that names the key, the value and the legal values: refusals.txt,
+where each row is a call and the beginning of its line; "..." stands for anything."""
 
 import contextlib
 import copy
@@ -16,33 +16,31 @@ import pytest
 import xarray
 import yaml
 from brute_force import begin, settings
+from msgspec.structs import asdict
+from raw import FreeCooling, build, check, check_initial, protocols
 from schedules import COOLING, STEADY, TINY
 from synthetic import reduced
 from tests.cli.conftest import GAS
+from tests.configurations import EXPERIMENTS, checked, raw_configuration
 from tests.entry import main
 from tests.files import point
 from tests.observables.frames import frame_of, system_of
+from tests.study_modules import module_of_study
 
 from roughgas import config as configuration
 from roughgas import simulate, theory, trajectory
-from roughgas.accuracy.soft_spheres import springs
-from roughgas.base import InputError
-from roughgas.config import schema as schemas
+from roughgas.base import InputError, labels  # noqa: F401  rows have it
+from roughgas.config.forms import PointForm
 from roughgas.data.point import Point, read_point, write_point
-from roughgas.observables import KINDS
-from roughgas.scene import build
-from roughgas.scene.initial import check
+from roughgas.observables import OBSERVABLES
 from roughgas.show import living as page
 from roughgas.show.figures import sweep
-from roughgas.simulation import schedule
-from roughgas.simulation.restart import Initial
-from roughgas.simulation.saved import initial_of
-from roughgas.simulation.starts import check_initial
+from roughgas.simulation.initial_states import InitialState
+from roughgas.simulation.saved_states import initial_states_of
 from roughgas.tasks import dsmc
-from roughgas.tasks.free_cooling import FreeCooling
 
-HERE = Path(__file__).parent
-PAPER = configuration.load(HERE / "experiments.yaml")
+TESTS = Path(__file__).parent
+PAPER, CONFIGURATION = raw_configuration(), configuration.load(EXPERIMENTS)
 SPIN = {"spin": {"inertia": 0.5}}
 GRAVITY = {"gravity": {"acceleration": 1}}
 FLOOR = {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1}
@@ -63,8 +61,8 @@ STRIPES = {
 STRIPES["layer"]["cycles"] = {"equilibrate": 40, "measure": 8, "samples": 32, "repeat": 4}
 
 
-class Said(InputError):
-    """What a command has said in its one line."""
+class RefusalLine(InputError):
+    """The one line of a command's refusal."""
 
     def __init__(self, line):
         self.line = line
@@ -74,29 +72,29 @@ class Said(InputError):
 
 
 def command(line, settings=None):
-    """Call a command, with settings as its option; raise what it says, or nothing."""
-    told = [*shlex.split(line), *([f"--settings={json.dumps(settings)}"] if settings else [])]
-    said, errors = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):
+    """Call a command, with settings as its option; raise its refusal, if any."""
+    arguments = [*shlex.split(line), *([f"--settings={json.dumps(settings)}"] if settings else [])]
+    output, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         try:
-            status = main(told)
+            status = main(arguments)
         except SystemExit as stop:  # of words that no command takes
             status = stop.code
-    assert said.getvalue() == "" and not [path for path in Path().iterdir() if path.is_file()]
+    assert output.getvalue() == "" and not [path for path in Path().iterdir() if path.is_file()]
     if status:
         assert status in (1, 2) and errors.getvalue().startswith("roughgas: error: ")
-        raise Said(errors.getvalue().removeprefix("roughgas: error: ").removesuffix("\n"))
+        raise RefusalLine(errors.getvalue().removeprefix("roughgas: error: ").removesuffix("\n"))
 
 
 def mixture(*species, dimension=2, pairs=()):
     return theory.mixture([*species], 0.9, 0, dimension, pairs=list(pairs))
 
 
-def scene(effects, box=None, beta=None, particles=20, **more):
+def scene(effects, box=None, beta=None, particles=20, **settings_beside):
     """Build and check an experiment: a bed is open above."""
     box = box or (50, "open" if {"floor", "gravity"} & {*effects} else 50)
     beta = (0.0 if "spin" in effects else -1.0) if beta is None else beta
-    chosen = {"particles": particles, "box": list(box), "effects": effects} | more
+    chosen = {"particles": particles, "box": list(box), "effects": effects} | settings_beside
     build(chosen, 0.9, beta)
     check(chosen)
 
@@ -108,18 +106,18 @@ def bath(**langevin):
 
 def table(**changes):
     """A table of restitution with other entries; ... takes one away."""
-    changed = {key: one for key, one in (TABLE | changes).items() if one is not ...}
+    changed = {key: entry for key, entry in (TABLE | changes).items() if entry is not ...}
     scene({"restitution_table": changed}, (20, 20))
 
 
-def species(*every, pairs=(), beta=0.3, **more):
-    chosen = settings("gas", 40, [40, 40]) | {"species": [*every]} | more
-    chosen["species_pairs"] = [{"between": one, "restitution": 0.5} for one in pairs]
+def species(*every, pairs=(), beta=0.3, **further_settings):
+    chosen = settings("gas", 40, [40, 40]) | {"species": [*every]} | further_settings
+    chosen["species_pairs"] = [{"between": names, "restitution": 0.5} for names in pairs]
     build(chosen, 0.9, beta)
 
 
 def schema(*every):
-    schemas.check_schema(settings("gas", 40) | {"species": [*every]}, "gas", "experiment")
+    PointForm.check(settings("gas", 40) | {"species": [*every]}, "gas")
 
 
 def timed(kernel, **changes):
@@ -127,64 +125,65 @@ def timed(kernel, **changes):
     usual = COOLING | {"replicas": 6, "plateau": 30} if kernel == "gas" else TIMED
     box = [12.5, "open" if kernel == "bed" else 12.5]
     chosen = changes if "kind" in changes else usual | changes
-    schedule.check(settings(kernel, 10, box) | {"schedule": chosen})
+    protocols.check_experiment(settings(kernel, 10, box) | {"schedule": chosen})
 
 
-def staged(*parts):
-    stages = {"kind": "stages", "sample_every": 0.5, "stages": [*parts]}
-    simulate(r=0.9, beta=0.2, **settings("heated", 40, [30, 30]), schedule=stages)
+def staged(*stage_settings, **options):
+    stages = {"kind": "stages", "sample_every": 0.5, "stages": [*stage_settings]}
+    simulate(r=0.9, beta=0.2, **settings("heated", 40, [30, 30]), schedule=stages, **options)
 
 
 def begun(kernel, position):
     chosen = settings(kernel, 2, [12, "open" if kernel == "bed" else 12]) | {"schedule": TIMED}
-    time = 3.0  # after which the images of a sheared gas have slid by 6 a
-    one = Initial(np.array(position, float), np.zeros((2, 2)), time=time)
-    check_initial([one], chosen, build(chosen, 0.9, 0.3))
+    time = 3.0  # the images of a sheared gas have moved by 6 a
+    initial = InitialState(np.array(position, float), np.zeros((2, 2)), time=time)
+    check_initial([initial], chosen, build(chosen, 0.9, 0.3))
 
 
 def outside(*dims, units="a", **coordinates):
     """Read the state of two disks, whose positions have other dimensions, units or coordinates."""
     position, velocity = [[2.0, 6.0], [9.0, 6.0]], np.zeros((2, 2))
     vectors = {"position": (dims, position, {"units": units}), "velocity": (dims, velocity)}
-    initial_of(xarray.Dataset(vectors, coordinates))
+    initial_states_of(xarray.Dataset(vectors, coordinates))
 
 
-def watched(observe, beta=0.5, **more):
-    chosen = settings("sheared", 20, [25, 25]) | {"schedule": STEADY} | more
+def watched(observe, beta=0.5, **further_settings):
+    chosen = settings("sheared", 20, [25, 25]) | {"schedule": STEADY} | further_settings
     simulate(r=0.9, beta=beta, observe=observe, progress=False, **chosen)
 
 
 def looked(name, **changes):
     """Make an observable of a system of disks, with changes of its settings or of the system."""
-    system, kind = system_of((20, 20)), KINDS[name]
-    own = {key: changes.pop(key) for key in [*changes] if key in kind.settings}
-    system = frame_of(system).system._replace(**changes)
-    kind(system, **({key: one.default for key, one in kind.settings.items()} | own))
+    system, kind = system_of((20, 20)), OBSERVABLES[name]
+    chosen = asdict(kind.settings())
+    chosen.pop("every")
+    chosen |= {key: changes.pop(key) for key in [*changes] if key in chosen}
+    kind(frame_of(system).system._replace(**changes), **chosen)
 
 
 def simulated(name, **changes):
     simulate(name, **({"r": 0.9, "beta": 0.5} | changes))
 
 
-def changed(whole, path, value):
+def changed(configured, path, value):
     """The configuration with another value at a path, of an experiment or such as /scale."""
-    whole = copy.deepcopy(whole)
+    configured = copy.deepcopy(configured)
     path = path[1:] if path.startswith("/") else f"experiments.{path}"
     *parents, last = (int(key) if key.isdigit() else key for key in path.split("."))
-    inner = whole
+    inner = configured
     for key in parents:
         inner = inner[key]
     if value == "(absent)":
         del inner[last]
     else:
         inner[last] = value
-    return whole
+    return configured
 
 
 def config(path, value):
-    """Check the configuration with another value; the message says where it is wrong."""
+    """Check the configuration with another value; the message names its location."""
     try:
-        schemas.check(changed(PAPER, path, yaml.safe_load(value)))
+        checked(changed(PAPER, path, yaml.safe_load(value)))
     except InputError as error:
         assert str(error).startswith("config.yaml: ")
         assert path.removeprefix("/").split(".")[0] in str(error)
@@ -192,20 +191,20 @@ def config(path, value):
 
 
 def another(text):
-    schemas.check(changed(PAPER, "mine", yaml.safe_load(text)))
+    checked(changed(PAPER, "mine", yaml.safe_load(text)))
 
 
 def axis(sweep):
-    schemas.check(changed(PAPER, "spun", {"extends": "sheared", "sweep": yaml.safe_load(sweep)}))
+    checked(changed(PAPER, "spun", {"extends": "sheared", "sweep": yaml.safe_load(sweep)}))
 
 
 def at_scale(name, text):
-    schemas.check(changed(PAPER, f"/scales.small.{name}", yaml.safe_load(text)))
+    checked(changed(PAPER, f"/scales.small.{name}", yaml.safe_load(text)))
 
 
 def layer(text):
-    known = configuration.validated(STRIPES, "stripes")
-    configuration.validated(configuration.changed_by(known, yaml.safe_load(text)), "stripes")
+    experiment = configuration.WrittenExperiment(STRIPES).fitted("stripes")
+    experiment.changed(yaml.safe_load(text)).experiment("stripes")
 
 
 def opened(name, value):
@@ -217,19 +216,19 @@ def opened(name, value):
 
 
 def of_points(name, **changes):
-    """Call a command with a point of which a variable, or an attribute, is another."""
-    made = point()
-    own = {key: changes.pop(key) for key in [*changes] if key in made.attributes}
-    made = Point(made.variables | changes, made.attributes | own)
+    """Call a command with a point with another variable or attribute."""
+    original = point()
+    attributes = {key: changes.pop(key) for key in [*changes] if key in original.attributes}
+    original = Point(original.variables | changes, original.attributes | attributes)
     Path("data").mkdir()
-    write_point("data/point.nc", made)
+    write_point("data/point.nc", original)
     command(f"{name} data/point.nc{' -o all.nc' if name == 'reduce' else ''}")
 
 
 def living(effects):
     """Put a bed with other effects into the living page."""
-    bed = page.settings(PAPER, "vibrated")
-    page.scene_of("vibrated", configuration.merged(bed, {"effects": effects}))
+    bed = page.experiment_of(CONFIGURATION, "vibrated")
+    page.scene_of("vibrated", bed.changed({"effects": effects}))
 
 
 def loaded(text):
@@ -237,8 +236,9 @@ def loaded(text):
     configuration.load("c.yaml")
 
 
+springs = module_of_study("accuracy", "soft_spheres").springs
 CALLED = begin, springs, trajectory, reduced, FreeCooling
-NAMES = globals() | {one.__name__: one for one in CALLED}
+NAMES = globals() | {function.__name__: function for function in CALLED}
 NAMES |= {"GAS": GAS, "TINY": TINY, "sweep": sweep, "dsmc": dsmc, "COOLING": COOLING}
 NAMES |= {
     "nan": math.nan,
@@ -256,7 +256,7 @@ NAMES |= {
 }
 ROWS = [
     tuple(map(str.strip, line.split(" -> ")))
-    for line in (HERE / "refusals.txt").read_text(encoding="utf-8").splitlines()
+    for line in (TESTS / "refusals.txt").read_text(encoding="utf-8").splitlines()
     if line and not line.startswith("#")
 ]
 
@@ -266,6 +266,6 @@ def test_what_is_refused(call, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError) as caught:
         eval(call, NAMES)
-    said = str(caught.value)
-    assert "\n" not in said
-    assert re.match(".*".join(map(re.escape, re.split(r" ?\.\.\. ?", message))), said), said
+    refusal = str(caught.value)
+    assert "\n" not in refusal
+    assert re.match(".*".join(map(re.escape, re.split(r" ?\.\.\. ?", message))), refusal), refusal

@@ -11,15 +11,15 @@ import yaml
 from benchmarks import coverage
 from benchmarks.coverage import LENGTH, PLAN, TARGET, TRUTH, Checkout, scenes_of, tasks_of
 from benchmarks.coverage_tables import OURS, THEIRS, Comparison, Runs, Scene, tables_of, tally
+from raw import build, run_point
 
-from roughgas.scene import build
-from roughgas.simulation.point import run_point
-from roughgas.simulation.points import settings_of
-from roughgas.statistics.errors import Estimate, student_t
+from roughgas.config import experiment_of
+from roughgas.statistics.errors import Estimate
+from roughgas.statistics.student import wallace_t
 
 ROOT = Path(__file__).parent.parent
-KNOWN = yaml.safe_load(PLAN.read_text(encoding="utf-8"))
-CRITERIA = KNOWN["criteria"]
+PLANNED = yaml.safe_load(PLAN.read_text(encoding="utf-8"))
+CRITERIA = PLANNED["criteria"]
 
 
 def made_up(departures, *, trusted=1, met=1, memory=math.nan, number=20, measure=200.0):
@@ -29,7 +29,7 @@ def made_up(departures, *, trusted=1, met=1, memory=math.nan, number=20, measure
         "R": 0.5 + 0.01 * np.array(departures, float),
         "R_stderr": np.full(runs, 0.01),
         "R_dof": np.full(runs, 9.0),
-        "R_ci95": np.full(runs, 0.01 * student_t(1.96, 9)),
+        "R_ci95": np.full(runs, 0.01 * wallace_t(1.96, 9)),
         "R_ci95_trusted": np.broadcast_to(trusted, runs).astype(float),
         "target_met": np.broadcast_to(met, runs).astype(float),
         "target_blocks": np.full(runs, 3.0),
@@ -50,18 +50,18 @@ def test_only_selected_runs_count():
 
 
 def test_departures_are_sigma_of_students_t():
-    runs = made_up([0, -student_t(4.0, 9)])
+    runs = made_up([0, -wallace_t(4.0, 9)])
     assert tally(runs, np.full(2, True), Estimate(0.5, 0.0)).sigmas == pytest.approx(4.0)
-    # by an error of the truth as large as that of the run they are less, in quadrature
+    # an error of the truth that equals the run's lowers the sigmas, in quadrature
     wider = tally(runs, np.full(2, True), Estimate(0.5, 0.01)).sigmas
-    runs = made_up([student_t(4.0, 9) / math.sqrt(2)])
+    runs = made_up([wallace_t(4.0, 9) / math.sqrt(2)])
     assert wider == pytest.approx(tally(runs, np.full(1, True), Estimate(0.5, 0.0)).sigmas)
 
 
 def test_a_run_without_an_interval_misses():
     runs = made_up([0, 0])
     runs["R_ci95"][1] = math.nan
-    assert scene([runs]).whole(runs).misses == 1
+    assert scene([runs]).all_runs(runs).misses == 1
 
 
 def test_tallies_add_up_but_for_the_largest_departure():
@@ -71,8 +71,8 @@ def test_tallies_add_up_but_for_the_largest_departure():
 
 
 def test_theory_says_how_many_memories_a_run_has():
-    known = made_up([0, 0, 0], memory=[20.0, math.nan, math.inf], number=25)
-    assert known.memories().tolist() == [10, 25, 25]
+    scene_runs = made_up([0, 0, 0], memory=[20.0, math.nan, math.inf], number=25)
+    assert scene_runs.memories().tolist() == [10, 25, 25]
     # the first is too short to count, though it is not trusted
     runs = made_up([0, 0, 0], trusted=[0, 1, 0], memory=[20.0, 10.0, 5.0])
     long = scene([runs, made_up([0], number=12)]).trusted_long_runs()
@@ -112,21 +112,19 @@ def cells(table):
 
 
 def test_what_is_not_simulated_is_a_dash():
-    known = {THEIRS: {"gas": scene([made_up([0, 1])], [made_up([0])])}, OURS: {}}
-    criteria, lengths, trusted, targets, notes = tables_of(Comparison(known, CRITERIA)).split(
-        "\n\n"
-    )
+    runs = {THEIRS: {"gas": scene([made_up([0, 1])], [made_up([0])])}, OURS: {}}
+    criteria, lengths, trusted, targets, notes = tables_of(Comparison(runs, CRITERIA)).split("\n\n")
     assert {row[-1] for row in cells(criteria)} == {"–"}
     assert {cell for table in (lengths, trusted, targets) for cell in cells(table)[0][-4:]} == {"–"}
     assert "same bits" not in notes
 
 
 def test_the_scenes_are_legal_and_no_seed_is_used_twice():
-    tasks = [task for name in KNOWN["scenes"] for task in tasks_of(name, KNOWN)]
+    tasks = [task for name in PLANNED["scenes"] for task in tasks_of(name, PLANNED)]
     seeds = [seed for task in tasks for seed in task.seeds]
     assert len(set(seeds)) == len(seeds)
     for task in tasks:
-        settings = settings_of(None, task.settings, "paper", None)
+        _, _, settings = experiment_of(None, task.settings)
         build(settings, task.r, task.beta)
         schedule = task.settings["schedule"]
         periods = schedule["measure"] / schedule.get("period", schedule["sample_every"])
@@ -147,8 +145,8 @@ def stored(checkout, task, sources, R=0.5):
 
 def test_only_missing_runs_are_made(tmp_path):
     ours, theirs = Checkout(OURS, ROOT, tmp_path), Checkout(THEIRS, ROOT, tmp_path)
-    tasks = tasks_of("heated, N=5", KNOWN)
-    assert ours.missing(tasks) == tasks and scenes_of(ours, {"heated, N=5": tasks}, KNOWN) == {}
+    tasks = tasks_of("heated, N=5", PLANNED)
+    assert ours.missing(tasks) == tasks and scenes_of(ours, {"heated, N=5": tasks}, PLANNED) == {}
     for task in tasks:
         stored(ours, task, ours.sources())
     assert ours.missing(tasks) == []
@@ -159,10 +157,10 @@ def test_only_missing_runs_are_made(tmp_path):
     stored(ours, tasks[2], ours.sources())
     longer = tasks[2]._replace(seeds=[1, 2])
     assert ours.missing([longer]) == [longer] and ours.runs(longer) is None
-    known = scenes_of(ours, {"heated, N=5": tasks}, KNOWN)["heated, N=5"]
-    assert known.truth.value == pytest.approx(0.5, abs=1e-4)
-    assert [runs.number for runs in known.lengths] == KNOWN["lengths"]
-    assert [runs.number for runs in known.targets] == KNOWN["blocks"]
+    scene_runs = scenes_of(ours, {"heated, N=5": tasks}, PLANNED)["heated, N=5"]
+    assert scene_runs.truth.value == pytest.approx(0.5, abs=1e-4)
+    assert [runs.number for runs in scene_runs.lengths] == PLANNED["lengths"]
+    assert [runs.number for runs in scene_runs.targets] == PLANNED["blocks"]
 
 
 def test_the_page_is_changed_between_the_marks_only(tmp_path, monkeypatch):
@@ -174,9 +172,9 @@ def test_the_page_is_changed_between_the_marks_only(tmp_path, monkeypatch):
     assert text == f"before\n{coverage.BEGIN}new\n{coverage.END}after\n"
 
 
-@pytest.mark.slow  # compiles kernels in a process of its own
+@pytest.mark.slow  # compiles kernels in a child process
 def test_a_process_of_a_checkout_runs_the_program(tmp_path):
-    plan = KNOWN | {"lengths": [5], "blocks": [3], "seeds": 2}
+    plan = PLANNED | {"lengths": [5], "blocks": [3], "seeds": 2}
     plan["truth"] = {"seeds": 2, "memories": 5}
     checkout, tasks = Checkout(OURS, ROOT, tmp_path), tasks_of("heated, N=5", plan)
     lines = []
@@ -185,7 +183,7 @@ def test_a_process_of_a_checkout_runs_the_program(tmp_path):
     assert lines == []  # nothing was missing
     for task, kind in itertools.zip_longest(tasks, (TRUTH, LENGTH, TARGET)):
         assert task.kind == kind
-        settings = settings_of(None, task.settings, "paper", None)
+        _, _, settings = experiment_of(None, task.settings)
         point = run_point(build(settings, task.r, task.beta), settings, task.seeds[1]).variables
         runs = checkout.runs(task)
         assert runs["R"][1] == point["R"] and runs["R_ci95"][1] == point["R_ci95"]

@@ -3,9 +3,9 @@
     python -m tests.versions newest python3.12
     python -m tests.versions oldest python3.11
 
-builds the wheel, installs it into an environment of its own, without extras and with the newest or
+builds the wheel, installs it into a new environment, without extras and with the newest or
 the oldest versions of what it needs, and runs tests that need no more than that. `coming` takes
-pre-releases, past the upper bounds as well, and Snakemake besides: it runs the tests of what is
+pre-releases of numba, and Snakemake past its upper bound: it runs the tests of what is
 used of numba and Snakemake though it is private to them. `make versions` does all that it can here.
 """
 
@@ -31,40 +31,42 @@ BASE = (
     "tests/test_bits.py",
 )
 """Tests that need nothing but the package; those of bits compare numbers across all versions."""
-PRIVATE = ("tests/compiling", "tests/habits/test_stopping.py")
+PRIVATE = ("tests/compiling", "tests/robustness/test_stopping.py")
 """Tests of what is used though it is private."""
 QUICK = "not slow and not remedy and not browser and not slurm"
 
 
 def requirements(way, project):
-    """What to install for one of WAYS: requirements as pip has them."""
-    needed = list(project["dependencies"])
+    """Return pip's requirements for one of WAYS."""
+    dependencies = list(project["dependencies"])
     if way == "oldest":
-        return [re.sub(r">=([\w.]+).*", r"==\1", one) for one in needed]
+        return [re.sub(r">=([\w.]+).*", r"==\1", requirement) for requirement in dependencies]
     if way == "coming":
-        needed += project["optional-dependencies"]["workflow"]
-        return [one.partition(",")[0] for one in needed]
-    return needed
+        dependencies += project["optional-dependencies"]["workflow"]
+        return [requirement.partition(",")[0] for requirement in dependencies]
+    return dependencies
 
 
 def check(way, python):
     """Install the wheel in one of WAYS for a Python, and run the tests. Raises where one fails."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    around = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    environ = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     with tempfile.TemporaryDirectory() as folder:
-        around["ROUGHGAS_CACHE_DIR"] = f"{folder}/kernels"
+        environ["ROUGHGAS_CACHE_DIR"] = f"{folder}/kernels"
+        if way == "coming":
+            environ["ROUGHGAS_PUBLIC_NUMBA"] = "0"  # its private parts are tested
         subprocess.run([python, "-m", "venv", f"{folder}/venv"], check=True)
         pip = [f"{folder}/venv/bin/python", "-m", "pip", "--disable-pip-version-check", "-q"]
         subprocess.run([*pip, "wheel", "--no-deps", "-w", folder, ROOT], check=True)
         (wheel,) = Path(folder).glob("*.whl")
         early = ["--pre"] if way == "coming" else []
-        needed = [*requirements(way, project), *TOOLS]
-        subprocess.run([*pip, "install", *early, *needed], check=True)
+        packages = [*requirements(way, project), *TOOLS]
+        subprocess.run([*pip, "install", *early, *packages], check=True)
         subprocess.run([*pip, "install", "--no-deps", wheel], check=True)
         subprocess.run([*pip, "freeze"], check=True)
         tests = PRIVATE if way == "coming" else BASE
         run = [pip[0], "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", QUICK, *tests]
-        subprocess.run(run, cwd=ROOT, env=around, check=True)
+        subprocess.run(run, cwd=ROOT, env=environ, check=True)
 
 
 if __name__ == "__main__":

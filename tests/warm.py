@@ -9,13 +9,12 @@ from pathlib import Path
 
 from accuracy.soft_spheres.pair import collide, shot
 from brute_force.scenes import KERNELS, RARE, begin, run, settings
-
-from roughgas.compiling.compiler import cpu_target
+from numba.core.registry import cpu_target
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 SOFT = "soft disks"
 
-SCENES = {  # those that take longest first
+SCENES = {  # the longest compilations first
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     "walled, on lists": settings("walled", 800, [100, "open"]) | {"neighbours": "lists"},
     **{name: settings(name) for name in KERNELS if name not in RARE},
@@ -24,7 +23,7 @@ SCENES = {  # those that take longest first
 
 
 def compile_kernels(claimed):
-    """Compile what no other worker does; `claimed` is a folder that they share.
+    """Compile the kernels that no other worker has claimed in the shared folder `claimed`.
 
     Numba first registers all that it can compile, here once for all children.
     """
@@ -36,7 +35,7 @@ def compile_kernels(claimed):
 
 
 def compile_one(name):
-    """Compile the kernel of a scene, or that of soft particles."""
+    """Compile the kernel of a scene, or of soft particles."""
     if name == SOFT:
         collide(0.7, 0.3, 0.3, 3, shot(0.8, 2, 0.01))
         return
@@ -45,7 +44,7 @@ def compile_one(name):
 
 
 def in_a_child(work, *arguments):
-    """Do some work in a process of its own, since a compiler never gives back its memory."""
+    """Call `work` in a child process, since a compiler never gives back its memory."""
     process = get_context("fork").Process(target=work, args=arguments)
     process.start()
     process.join()

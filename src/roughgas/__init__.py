@@ -2,15 +2,30 @@
 
 from roughgas.base import __version__
 
-__all__ = ["__version__", "experiments", "simulate", "trajectory"]
-TYPE_CHECKING = False  # but for type checkers; importing typing would take ten times as long
+__all__ = [
+    "__version__",
+    "experiments",
+    "open_points",
+    "register_effect",
+    "register_observable",
+    "simulate",
+    "trajectory",
+]
+TYPE_CHECKING = False  # type checkers take it as true; importing typing would be ten times slower
 
 if TYPE_CHECKING:
-    from roughgas.library import experiments, simulate, trajectory
+    from roughgas.library import (
+        experiments,
+        open_points,
+        register_effect,
+        register_observable,
+        simulate,
+        trajectory,
+    )
 else:
 
     def __getattr__(name: str) -> object:
-        # found only when it is asked for, since every job of the pipeline imports this package, too
+        # imported lazily, since every job of the pipeline imports this package
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         from roughgas import library
@@ -19,4 +34,5 @@ else:
 
 
 def __dir__() -> list[str]:
+    """Return the names of the module, the lazily imported ones included."""
     return sorted({*globals(), *__all__})

@@ -1,43 +1,55 @@
-"""What judges of statements are made of: samples of numbers beside theory, and rules for verdicts.
+"""Building blocks for judges of statements: samples of numbers, and rules for verdicts.
 
-A judge takes reduced datasets beside theory (`theory`, like R) and returns a `Finding`, or raises
-`NotTestedError` where the data cannot decide. `agreement` judges whether a sample of differences is
-compatible with zero; `grade`, `worse` and `together` combine verdicts.
+A judge takes reduced datasets with the variable `theory`, of the same dimensions as R, and returns
+a `Finding`, or raises `NotTestedError` if the data cannot decide. `agreement` judges whether a
+sample of differences is compatible with zero; `grade`, `worst_verdict` and `combined_finding`
+combine verdicts.
 """
 
-from roughgas.claims.evidence import (
+from roughgas.claims.driven import averaged, follows_its_share, follows_over_collisions
+from roughgas.claims.published import references
+from roughgas.claims.verdicts import (
     AGREE,
+    AGREE_RELATIVE,
+    DISAGREE,
+    DISAGREE_RELATIVE,
+    EXCEPTIONS,
     FAILS,
-    FAR,
-    FEW,
     HOLDS,
-    LIMIT,
-    NEAR,
     QUALIFIED,
     Finding,
     NotTestedError,
     Sample,
     agreement,
     agreement_in_proportion,
+    check_power,
+    combined_finding,
     deviation,
     deviation_at_shares,
+    deviation_in_proportion,
     difference,
+    effect_of_restitution,
     grade,
-    of_ratio,
     over_seeds,
-    place_of,
+    point_text,
     points,
+    ratio_sample,
     sample,
     spin_shares,
     tendency,
     text,
-    together,
-    worse,
+    worst_verdict,
 )
-from roughgas.claims.paper import averaged, follows_its_share, follows_over_collisions
-from roughgas.claims.published import references
-from roughgas.data.reduced import third_axis
-from roughgas.results.evidence import Row
-from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
-from roughgas.statistics.fits import power_law
-from roughgas.theory.prediction import species_at
+from roughgas.data.variables import third_axis
+from roughgas.results.comparison import Row
+from roughgas.results.long_table import LongRow, read_long_rows
+from roughgas.statistics.errors import (
+    SIGNIFICANCE,
+    SIGNIFICANT,
+    Estimate,
+    stderr_over_seeds,
+    sum_error,
+)
+from roughgas.statistics.fits import limit_at_zero, power_law
+from roughgas.statistics.student import t_quantile
+from roughgas.theory.prediction import predicted_ratio, species_at

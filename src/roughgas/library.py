@@ -1,10 +1,11 @@
-"""roughgas in a notebook or a script: a scene from keyword arguments, its dataset back.
+"""roughgas in a notebook or a script: datasets of scenes given by keyword arguments.
 
-The names of this module are there as `roughgas.simulate`, `roughgas.trajectory` and
-`roughgas.experiments`.
+The functions of this module are available as `roughgas.simulate`, `roughgas.trajectory`,
+`roughgas.open_points`, `roughgas.experiments`, `roughgas.register_effect` and
+`roughgas.register_observable`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
@@ -13,44 +14,56 @@ from roughgas.base import InputError
 if TYPE_CHECKING:
     import xarray
 
-    from roughgas.config import Place
+    from roughgas.base.labels import GridPoint
+    from roughgas.observables import Observable
+    from roughgas.simulation.tracker import Tracker
 
-Values = float | Sequence[float]
+NumberOrNumbers = float | Sequence[float]
 """One value of r, of beta or of the seed, or several."""
 Side = float | Literal["open"]
 """Length of a box along one axis in a; the last axis may be open above."""
 Effects = Mapping[str, Mapping[str, float | str] | None]
-"""Parameters of effects by the effects' names; None takes away one that the experiment has."""
+"""Parameters of effects by name; None removes an effect of the experiment."""
 
 Species = Sequence[Mapping[str, Any]]
 """Species, or pairs of them, each a mapping of keys to values."""
-Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[[Any], Any] | None]
-"""Observables by name, each with settings, with None for the usual ones, or a function of frames
+ObservableChoice = Mapping[str, float] | Callable[[Any], Any] | None
+"""Settings of an observable, a function of frames, or None for the default settings."""
+Observe = Sequence[str] | Mapping[str, ObservableChoice]
+"""Observables by name, each with settings, None for the default settings, or a function of frames
 (`roughgas.observables.Frame`)."""
 
 
 class Stage(TypedDict, total=False):
-    """A stage of a schedule; what it changes stays so until another stage changes it again."""
+    """A stage of a schedule; its changes persist until a later stage changes them.
+
+    Times are in the time unit T, temperatures in m a^2/T^2.
+    """
 
     duration: float  #: T
-    measure: bool  #: whether averages are over it, too; true by default
-    effects: Effects  #: new values of parameters of effects that are there
+    sample_every: float  #: interval of its samples in T, in place of the schedule's
+    sample_at: Sequence[float]  #: instants of its samples instead, in T since it begins
+    samples_per_decade: int  #: samples per decade of time instead, from `first_sample` on
+    first_sample: float  #: first instant of these, in T since it begins
+    sample_start: bool  #: whether the begin of the stage is sampled, too
+    measure: bool  #: whether averages include it; true by default
+    effects: Effects  #: new values of parameters of the scene's effects
     r: float  #: new restitution
     beta: float  #: new roughness
-    temperature: float  #: of translation, that velocities are scaled to when it begins
-    spin_temperature: float  #: of rotation, that spins are scaled to when it begins
+    temperature: float  #: of translation; velocities are scaled to it when the stage begins
+    spin_temperature: float  #: of rotation; spins are scaled to it, or drawn if all are 0
 
 
 class Schedule(TypedDict, total=False):
-    """How long to simulate and what to measure, as `schedule` in config.yaml.
+    """Schedule of a run, as `schedule` in config.yaml.
 
-    A driven gas has the kind `steady`, and its lengths in T; one that nothing drives has the kind
-    `cooling`, and its lengths in collisions per particle. Any gas may go through `stages`, whose
-    lengths are in T.
+    A driven gas has the kind `steady`, with lengths in T; a gas without drive has the kind
+    `cooling`, with lengths in collisions per particle. Any gas may go through `stages`, with
+    lengths in T.
     """
 
     kind: Literal["steady", "cooling", "stages"]  #: driven, not driven, or either
-    sample_every: float  #: between samples
+    sample_every: float  #: interval of samples
     equilibrate: float  #: (steady) before the measurement
     measure: float  #: (steady) length of the measurement
     period: float  #: (steady) of the drive; averages are over whole periods
@@ -58,16 +71,16 @@ class Schedule(TypedDict, total=False):
     thermalise: float  #: (cooling) as smooth elastic particles, at the start
     relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
     plateau: float  #: (cooling) length of the plateau
-    target_stderr: float  #: standard error of R that the run is prolonged to
-    stages: Sequence[Stage]  #: (stages) what the gas goes through, in place of all lengths above
+    target_stderr: float  #: the run is prolonged until R has this standard error
+    stages: Sequence[Stage]  #: (stages) the stages of the gas, in place of all lengths above
 
 
 def simulate(
     experiment: str | None = None,
     *,
-    r: Values,
-    beta: Values,
-    seed: Values | None = None,
+    r: NumberOrNumbers,
+    beta: NumberOrNumbers,
+    seed: NumberOrNumbers | None = None,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
@@ -83,14 +96,17 @@ def simulate(
     observe: Observe | None = None,
     scale: str | None = None,
     config: str | Path | None = None,
+    trackers: "Sequence[Tracker]" = (),
+    checkpoint: str | Path | None = None,
     progress: bool = True,
 ) -> "xarray.Dataset":
     """Simulate one point of an experiment, or several, and measure them.
 
     The keyword arguments `particles`, `box`, `effects` and `schedule` are the keys of an experiment
-    in config.yaml. Beside a name they are merged over its settings, key by key; without a name they
-    are the scene, and all of them must be given. The same arguments give the same numbers to the
-    last bit (all but `kernel_seconds`), which are also those that `roughgas run` writes.
+    in config.yaml. With a name they are merged over its settings, key by key; without a name they
+    define the scene, and all of them are required. The same arguments give the same numbers to the
+    last bit (except `kernel_seconds`), as `roughgas run` does. Units are the radius a and the mass
+    m of a particle and the time unit T.
 
     Parameters
     ----------
@@ -103,16 +119,16 @@ def simulate(
     beta
         Tangential restitution (roughness), in [-1, 1]; -1 is smooth, 1 perfectly rough.
     seed
-        Seed of the random generator, from 0 to 2^63 - 1; by default 1, or with `initial` that of
-        the run which is gone on from.
+        Seed of the random generator, from 0 to 2^63 - 1; by default 1, or with `initial` the seed
+        of the run that is continued.
     particles
         Number N of particles.
     box
-        Lengths of the box in a, two for disks and three for spheres; the last one is vertical, and
-        ``"open"`` if there is gravity.
+        Lengths of the box in particle radii a, two for disks and three for spheres; the last one is
+        vertical, and ``"open"`` if there is gravity.
     packing
         Volume fraction of the particles, in place of these lengths. The box keeps its shape, or has
-        that of the proportions in `box`, such as ``(1, 1, 1)``; by default it is a square.
+        the proportions in `box`, such as ``(1, 1, 1)``; by default it is a square.
     layer
         A shaken layer of spheres by Gamma, f* and its depth in diameters, such as ``{"gamma": 3,
         "f_star": 0.44, "depth": 5.42}``, in place of the amplitude and the period of its floor;
@@ -129,42 +145,49 @@ def simulate(
     schedule
         How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
     spin_temperature
-        Temperature of the spins at the start, in m a^2/T^2; that of the velocities is 1.
+        Temperature of the spins at the start, in m a^2/T^2; the velocities have temperature 1.
     initial
-        Where to begin instead: a point that has kept its state, which is gone on from; or one frame
-        of a trajectory, or a dataset with its variables ``position``, ``velocity`` and ``spin``,
-        read by the names of their dimensions. Species are matched by name.
+        State to begin with: a point with `keep_state`, which is continued; or a frame of a
+        trajectory, or a dataset with the variables ``position``, ``velocity`` and ``spin``, read by
+        the names of their dimensions. Species are matched by name.
     reseed
-        Seed of fresh noise for `initial`. Without it an unchanged state goes on with the noise of
-        its run; a changed one has noise that follows from the seed and from the state.
+        Seed of new noise for `initial`. By default an unchanged state continues the noise of its
+        run; the noise for a changed state follows from the seed and from the state.
     keep_state
         Whether to keep the last state in the dataset, for `initial` of another run.
     observe
-        What to watch besides: names of observables, such as ``["profiles", "stress"]``, or names
-        with their settings, or with a function that returns a number or an array of a frame
+        Further measurements: names of observables, such as ``["profiles", "stress"]``, or names
+        with their settings, or with a function that returns a number or an array for a frame
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
         ``"paper"``, ``"quick"`` (the paper's experiments, with errors three times as wide) or
         ``"small"`` (a quarter of the particles, and short); by default the configuration's own
         ``scale``, ``"paper"``.
     config
-        Path of a configuration to use instead of the one that comes with roughgas.
+        Path of a configuration to use instead of the packaged one.
+    trackers
+        Objects that watch the run (`roughgas.gas.Tracker`), one point after another.
+    checkpoint
+        Path of a file with the state of a long run: after an interruption the same call resumes
+        from it, to the last bit, and removes it at the end. Only for a single r, beta and seed.
     progress
-        Whether to show a progress bar, in a notebook or on a terminal; elsewhere a line now and
-        then, of what takes more than ten seconds.
+        Whether to show a progress bar, in a notebook or on a terminal; elsewhere occasional lines,
+        if the run takes more than ten seconds.
 
     Returns
     -------
     xarray.Dataset
-        ``R`` is the share of rotation in the energy, a mean over time, ``R_stderr`` its standard
-        error. ``R_collisional`` of a driven gas with the effect ``contact_averages`` is the average
-        over collisions that Lun's formula is derived for, unless the gas is sheared.
-        ``R_series`` (sample) is what R is the mean of; ``E_trans_series`` and ``E_rot_series`` are
-        the energies. Their coordinate is ``time`` (T) or, if the gas cools,
-        ``collisions_per_particle``. ``R_replica`` (replica) has the cooling runs one by one. Every
-        variable has ``units`` and a ``long_name``; the attributes say how to make it again.
-        Of lists, the reduced dataset that the pipeline makes: ``R`` (r, beta) and its error pooled
-        over seeds, ``R_seed`` (r, beta, seed).
+        ``R`` is the share of rotation in the energy, E_rot/(E_rot + E_trans) with the energies per
+        degree of freedom, a mean over time, ``R_stderr`` its standard error. ``R_collisional`` of
+        a driven gas with the effect ``contact_averages`` is the average over collisions that Lun's
+        formula is derived for, unless the gas is sheared.
+        R is the mean of ``R_series`` (sample); ``E_trans_series`` and ``E_rot_series`` are the
+        energies in m a^2/T^2, of a cooling gas in units of the initial E_trans. Their coordinate
+        is ``time`` (T) or, if the gas cools, ``collisions_per_particle``. ``R_replica`` (replica)
+        has R of each cooling run. Every variable has ``units`` and a ``long_name``; the attributes
+        hold a command to reproduce it.
+        For lists of r, beta or the seed, the reduced dataset of the pipeline: ``R`` (r, beta) and
+        its error pooled over seeds, ``R_seed`` (r, beta, seed).
 
     Raises
     ------
@@ -173,7 +196,7 @@ def simulate(
     roughgas.base.CollapseError
         If contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
     roughgas.base.SilentError
-        If particles are so few that the collisions of a cooling gas do not come.
+        If a cooling gas has too few particles for the requested collisions to occur.
     OSError
         If `config` cannot be read.
 
@@ -186,7 +209,7 @@ def simulate(
     >>> print(f"{theory.cooling_ratio(0.9, 0.5):.2f}")
     0.44
 
-    A changed one, here a small bed on a floor that moves as a sine:
+    A modified experiment, here a small bed on a floor that moves as a sine:
 
     >>> bed = simulate(
     ...     "vibrated", r=0.9, beta=0, particles=40, box=(12.5, "open"), progress=False,
@@ -195,7 +218,7 @@ def simulate(
     >>> bed.R_series.dims, bed.R_series.size
     (('sample',), 400)
 
-    To go on from where another run has stopped, to the last bit:
+    To continue another run from its end, to the last bit:
 
     >>> first = simulate("sheared", r=0.9, beta=0, scale="small", keep_state=True, progress=False)
     >>> more = {"equilibrate": 0, "measure": 100}
@@ -209,23 +232,49 @@ def simulate(
     changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
     changes |= dict(schedule=schedule, spin_temperature=spin_temperature, keep_state=keep_state)
 
+    from roughgas.config import experiment_of
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
-    from roughgas.simulation.points import observables_of, points
-    from roughgas.simulation.saved import initial_of, seeded
+    from roughgas.simulation.run_points import simulate_points
+    from roughgas.simulation.saved_states import initial_states_of, with_noise_source
 
-    states = [] if initial is None else initial_of(initial)
-    states, seed = seeded(states, seed, reseed)
-    at, several = _places(r, beta, seed)
-    if several and (keep_state or initial is not None):
-        key = "keep_state" if keep_state else "initial"
+    states = [] if initial is None else initial_states_of(initial)
+    states, seed = with_noise_source(states, seed, reseed)
+    points_of_grid, is_sweep = _grid_of(r, beta, seed)
+    single_point_only = {
+        "keep_state": keep_state or None,
+        "initial": initial,
+        "checkpoint": checkpoint,
+    }
+    if is_sweep and (
+        key := next((name for name, value in single_point_only.items() if value is not None), "")
+    ):
         raise InputError(key, "given", "come with one r, one beta and one seed")
-    changes["observables"], functions = observables_of(observe)
-    name, scale, settings = _settings(experiment, changes, scale, config)
-    told = ["--from", "start.nc"] if states else []
-    outputs = ["point.nc"] * len(at)
-    found = points(name, settings, at, scale, outputs, states, functions, told, quiet=not progress)
-    return reduced_in_memory(found) if several else as_dataset(next(found))
+    observables = _by_name(observe)
+    functions = {key: chosen for key, chosen in observables.items() if callable(chosen)}
+    if observe is not None:
+        named = {key: chosen for key, chosen in observables.items() if not callable(chosen)}
+        changes["observables"] = {key: dict(chosen or {}) for key, chosen in named.items()}
+    name, scale, settings = experiment_of(experiment, changes, scale, config)
+    command_options = ["--from", "start.nc"] if states else []
+    outputs = ["point.nc"] * len(points_of_grid)
+    results = simulate_points(
+        name,
+        settings,
+        points_of_grid,
+        scale,
+        outputs,
+        initial=states,
+        functions=functions,
+        extra_arguments=command_options,
+        quiet=not progress,
+        checkpoints=[] if checkpoint is None else [str(checkpoint)],
+        trackers=trackers,
+    )
+    if is_sweep:
+        return reduced_in_memory(results)
+    (point,) = results
+    return as_dataset(point)
 
 
 def trajectory(
@@ -250,12 +299,13 @@ def trajectory(
     reseed: int | None = None,
     scale: str | None = None,
     config: str | Path | None = None,
+    checkpoint: str | Path | None = None,
     progress: bool = True,
 ) -> "xarray.Dataset":
-    """Simulate one point of an experiment, and return where its particles are at chosen times.
+    """Simulate one point of an experiment, and return the particles at chosen times.
 
-    It is that of the gas that `simulate` measures with the same arguments, or of its first replica.
-    Times are in T, of a cooling gas in collisions per particle.
+    The gas is the same as in `simulate` with the same arguments, or its first replica. Times are in
+    the time unit T, or in collisions per particle for a cooling gas.
 
     Parameters
     ----------
@@ -263,22 +313,23 @@ def trajectory(
         As for `simulate`.
     effects, species, species_pairs, schedule
         As for `simulate`.
-    initial, reseed, scale, config, progress
+    initial, reseed, scale, config, checkpoint, progress
         As for `simulate`.
     start
-        Where the frames begin; by default at `initial`, or when a driven gas should be steady.
+        Time of the first frame; by default of `initial`, or when a driven gas should be steady.
     length, frames
-        How long they go on, and how many they are; by default as suits the experiment.
+        Duration and number of the frames; the defaults depend on the experiment.
     times
-        The times themselves, rising, in place of these three.
+        The times of all frames, rising, in place of these three.
 
     Returns
     -------
     xarray.Dataset
         ``position``, ``velocity`` (frame, particle, axis), ``spin`` (frame, particle, spin_axis),
-        of disks ``angle`` (frame, particle), ``radius``, ``box``, ``time``, of a sheared gas
-        ``image_shift`` (frame), the energies of each frame, and of a mixture ``species_of``,
-        ``mass`` and ``inertia`` (particle). The function
+        of disks ``angle`` (frame, particle), ``radius`` (particle), ``box`` (axis), ``time``
+        (frame), of a sheared gas ``image_shift`` (frame), the energies of each frame, and of a
+        mixture ``species_of``, ``mass`` and ``inertia`` (particle). Lengths are in particle radii
+        a, velocities and spins (a w, the velocity of the surface) in a/T. The function
         `roughgas.data.trajectory.write_trajectory` makes files of it for other programs.
 
     Raises
@@ -296,29 +347,75 @@ def trajectory(
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
     changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
     changes["schedule"] = schedule
+    from roughgas.config import experiment_of
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.points import provenance
-    from roughgas.simulation.progress import watched
-    from roughgas.simulation.restart import SEED
-    from roughgas.simulation.saved import initial_of, seeded
-    from roughgas.simulation.trajectory import chosen, snapshots, variables
+    from roughgas.simulation.films import film
+    from roughgas.simulation.initial_states import SEED
+    from roughgas.simulation.progress import print_line, with_progress_bar
+    from roughgas.simulation.run_points import provenance
+    from roughgas.simulation.saved_states import initial_states_of, with_noise_source
+    from roughgas.simulation.trajectory import requested_take as chosen_frames
+    from roughgas.simulation.trajectory import trajectory_variables
 
-    states, seed = seeded([] if initial is None else initial_of(initial), seed, reseed)
-    ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
-    name, scale, settings = _settings(experiment, changes, scale, config)
-    scene = build(settings, legal_r, legal_beta)
-    take = chosen(settings, scene, start, length, frames, times, states)
-    told = (["--from", "start.nc"] if states else []) + take.options()
+    states, seed = with_noise_source(
+        [] if initial is None else initial_states_of(initial), seed, reseed
+    )
+    (grid_point,), _ = _grid_of(r, beta, seed)
+    name, scale, settings = experiment_of(experiment, changes, scale, config)
+    scene = build(settings, grid_point.r, grid_point.beta)
+    take = chosen_frames(settings, scene, start, length, frames, times, states)
+    command_options = (["--from", "start.nc"] if states else []) + take.options()
     noise = states[0].noise if states else SEED
-    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told, noise)
-    filmed = snapshots(scene, settings, number, take, states)
-    shots = list(watched(name, take.frames, "frames", filmed, quiet=not progress))
-    return as_trajectory(variables(scene, settings, shots), about | {"seed": number})
+    attributes = provenance(
+        name, settings, grid_point.labels, scale, "bed.xyz", "trajectory", command_options, noise
+    )
+    with film(scene, settings, grid_point, take, states, checkpoint, print_line) as filmed:
+        shots = list(with_progress_bar(name, take.frames, "frames", filmed, quiet=not progress))
+    return as_trajectory(
+        trajectory_variables(scene, settings, shots), attributes | {"seed": grid_point.seed}
+    )
+
+
+def open_points(points: str | Path | Iterable[str | Path]) -> "xarray.Dataset":
+    """Open the points of one experiment as one dataset, each number over r, beta and the seed.
+
+    Unlike in xarray, points may be missing, series may differ in length, and files may be of an
+    older roughgas.
+
+    Parameters
+    ----------
+    points
+        A pattern like a shell's, such as ``"results/paper/cooling/r*/beta*/seed*.nc"``, where
+        ``**`` stands for any folders; or paths of files.
+
+    Returns
+    -------
+    xarray.Dataset
+        Every variable of the points has the further dimensions ``r``, ``beta`` and ``seed``, in
+        rising order; the third axis of an experiment, if it has one, comes first. Missing points,
+        also of integers, and the ends of shorter series are NaN. A coordinate that all points
+        share, up to its length, keeps its dimensions.
+        Attributes are common to all points, and do not include their coordinates. With dask
+        installed, arrays of a point are read when they are computed; else all is in memory.
+        Left out are text that is no coordinate, integers along a dimension of varying length, and
+        variables along a dimension whose coordinate differs among points.
+
+    Raises
+    ------
+    roughgas.base.InputError
+        Without such files, for a file that is no point or is damaged, for points of several
+        experiments, scales or swept parameters, and for the same point twice.
+    OSError
+        For a file that cannot be read.
+    """
+    from roughgas.results import open_points as opening
+
+    return opening.open_points(points)
 
 
 def experiments(config: str | Path | None = None) -> dict[str, str]:
-    """Return the experiments that `simulate` knows by name, and what each is.
+    """Return the descriptions of the experiments that `simulate` takes, by name.
 
     `config` and the errors are as for `simulate`.
 
@@ -330,38 +427,86 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
     """
     from roughgas.config import SHIPPED, load
 
-    known = load(config or SHIPPED)["experiments"]
-    return {name: settings.get("description", "") for name, settings in known.items()}
+    configured = load(config or SHIPPED).experiments
+    return {name: settings.get("description", "") for name, settings in configured.items()}
 
 
-def _settings(
-    experiment: str | None,
-    changes: Mapping[str, Any],
-    scale: str | None,
-    path: str | Path | None,
-) -> tuple[str, str, dict[str, Any]]:
-    """Return the name of an experiment, its scale, and its settings with changes.
+def register_effect(name: str, kind: type, before: str | None = None) -> None:
+    """Register an effect that a file of yours defines, by its name among `effects`.
 
-    A scene without a name has the scale of the paper, others that of their configuration.
+    It is then equivalent to the effects of docs/effects.md: its settings are checked, and messages
+    list it. The cache of kernels depends on the sources of their effects: after an edit of the file
+    the kernel is compiled anew, while scenes without the effect keep their kernels.
+
+    Parameters
+    ----------
+    name
+        Lower-case letters, digits and _; unique among effects, unless the same file, imported
+        again, has registered it before.
+    kind
+        Its class, a NamedTuple registered with its settings and hooks by
+        `roughgas.effects.settings.register`, in a file that is imported.
+    before
+        Name of the effect that it acts before, if several change the same value; by default it acts
+        after all others. Effects that only observe come last.
+
+    Raises
+    ------
+    roughgas.base.InputError
+        For a name that is taken, a class without settings or hooks, and hooks that are not open.
     """
-    from roughgas.config import PAPER, SHIPPED, usual_scale
-    from roughgas.simulation.points import UNNAMED, settings_of
+    from roughgas import effects
 
-    scale = scale or (PAPER if experiment is None else usual_scale(path or SHIPPED))
-    return experiment or UNNAMED, scale, settings_of(experiment, changes, scale, path)
+    effects.register_effect(name, kind, before)
 
 
-def _places(r: Any, beta: Any, seed: Any) -> "tuple[list[Place], bool]":
-    """Return the places of r, of beta and of the seed, and whether any of these is a list."""
-    from roughgas.config import places
+def register_observable(name: str, kind: "type[Observable]") -> None:
+    """Register an observable that a file of yours defines, by its name in `observe`.
 
-    several, values = False, []
-    for name, given in (("r", r), ("beta", beta), ("seed", seed)):
-        if isinstance(given, str) or not hasattr(given, "__len__"):
-            values.append([given])
+    Parameters
+    ----------
+    name
+        Lower-case letters, digits and _; unique among observables, unless the same file, imported
+        again, has registered it before.
+    kind
+        Its class, derived from `roughgas.observables.Observable`, every setting with a default.
+
+    Raises
+    ------
+    roughgas.base.InputError
+        For a name that is taken, another class, a setting without default, effects that require
+        settings, and variables that points already have.
+    """
+    from roughgas import observables
+
+    observables.register_observable(name, kind)
+
+
+def _by_name(observe: Observe | str | None) -> Mapping[str, ObservableChoice]:
+    """Return the observables in `observe` by name, each with its settings or a function.
+
+    None stands for the default settings.
+    """
+    if isinstance(observe, str):
+        return {observe: None}
+    return observe if isinstance(observe, Mapping) else dict.fromkeys(observe or ())
+
+
+def _grid_of(r: Any, beta: Any, seed: Any) -> "tuple[list[GridPoint], bool]":
+    """Return the points of all combinations of r, beta and seed, and whether any is a list.
+
+    Each argument is a number, its text, or a list of these. Raises InputError for an empty list and
+    for illegal values.
+    """
+    from roughgas.base.labels import grid_points
+
+    is_list, values = False, []
+    for name, argument in (("r", r), ("beta", beta), ("seed", seed)):
+        if isinstance(argument, str) or not hasattr(argument, "__len__"):
+            values.append([argument])
             continue
-        several = True
-        values.append(list(getattr(given, "tolist", lambda g=given: g)()))
+        is_list = True
+        values.append(list(getattr(argument, "tolist", lambda g=argument: g)()))
         if not values[-1]:
             raise InputError(name, "[]", "be one value or several")
-    return places(*values), several
+    return grid_points(*values), is_list

@@ -1,10 +1,12 @@
-"""What figures of studies are drawn with: R along one axis beside theory, as in all figures.
+"""Building blocks for figures of studies: R along an axis with theory, in a common style.
 
-`ratio_figure` draws panels (`PanelContent`) of series of points, theory over them, and residuals
-beneath; `series` takes them from a reduced dataset. Figures of another form use the parts.
+`ratio_figure` draws panels (`PanelContent`) of series of points with theory, and residuals beneath;
+`series` takes the points from a reduced dataset. Other figures use the single functions. A title
+states a conclusion only through `judged_title`, which judges the data drawn.
 """
 
 from roughgas.base import InputError
+from roughgas.claims.titles import judged_title
 from roughgas.data.reduced import particles_of
 from roughgas.show.figures.panel import (
     ANY_R,
@@ -12,8 +14,8 @@ from roughgas.show.figures.panel import (
     DOTS,
     ENERGY_RATIO,
     FRICTION,
-    HALF,
     INERTIA,
+    LEGEND_AT_HALF,
     NOT_TRUSTED,
     RESTITUTION,
     ROUGHNESS,
@@ -44,14 +46,14 @@ from roughgas.show.figures.panel import (
 from roughgas.show.style import (
     FAINT,
     GREY,
-    LOOKS,
+    LINE_STYLES,
     THEORY,
     TWO_WIDE,
     WIDTH,
-    Look,
+    LineStyle,
     Style,
     add_circles,
+    move_circles,
     write_movie,
 )
-from roughgas.show.style import move as move_circles
 from roughgas.theory.prediction import predicted_ratio, species_at

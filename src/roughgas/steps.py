@@ -1,32 +1,34 @@
-"""The steps of the workflow that only its rules give: `python -m roughgas.steps NAME ...`.
+"""Steps of the workflow: `python -m roughgas.steps NAME ...`. Its rules run them.
 
-Each function in STEPS is a step: its positional parameters are arguments, those after `*` options;
-what is iterable takes several values, a bool none, and what has a default may be left out. Settings
-are JSON, as the rules hand them on; `checked` says that they need no check. Errors are one line,
-and exit statuses those of `roughgas`.
+`fix_criteria` alone is run by hand.
+
+Each function in STEPS is a step: its positional parameters are arguments, its keyword-only
+parameters options; an iterable takes several values, a bool none, and a parameter with a default is
+optional. Settings are JSON, as passed by the rules. Errors are one line, and exit statuses are the
+same as of `roughgas`.
 """
 
-import argparse
 import inspect
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, get_origin
 
 from roughgas import cli, config
-from roughgas.cli.parser import Parser
+from roughgas.base import NamedValues, from_json
+from roughgas.base.labels import restitution
+from roughgas.cli.parser import Function, Parser, add_arguments
 
 
-def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = False) -> None:
-    """Compile what the points of an experiment run at some r: of all its variants."""
+def compile_kernels(experiment: str, *, settings: str, r: str) -> None:
+    """Compile the kernels of an experiment, in all its variants, at some r."""
     from roughgas.simulation.point import compile_kernels
 
-    found = config.from_text(settings, "--settings", checked)
-    every = config.every_variant(experiment, found).values()
-    compile_kernels(every, config.restitution(r))
+    written = config.WrittenExperiment.from_text(settings, "--settings")
+    written.check_third_axis("--settings")
+    variants = written.every_variant(experiment).values()
+    compile_kernels((variant.experiment("--settings") for variant in variants), restitution(r))
 
 
-def study_claims(
+def claims(
     folder: str,
     inputs: list[str],
     *,
@@ -34,100 +36,83 @@ def study_claims(
     json: str,
     markdown: str,
     experiments: Sequence[str] = (),
+    reservation: str = "",
 ) -> None:
-    """Judge the statements in claims.yaml of the study in a folder, which has these experiments."""
+    """Judge the statements in claims.yaml of the study in a folder, on its experiments.
+
+    The reservation says why its criteria were not fixed before these data, if they were not.
+    """
     from roughgas.claims import judge, read_study
 
-    judge(inputs, json, markdown, read_study(folder, title, experiments))
+    judge(inputs, json, markdown, read_study(folder, title, experiments, reservation))
 
 
-def claims(inputs: list[str], *, json: str, markdown: str) -> None:
-    """Judge the claims of the paper."""
-    from roughgas.claims import PAPER, judge
+def fix_criteria(input: str, studies: list[str]) -> None:
+    """Fix the criteria of studies, before their data: write findings.yaml of each."""
+    from roughgas.config import findings
 
-    judge(inputs, json, markdown, PAPER)
+    configuration = config.load(input)
+    for name in studies:
+        print(f"{name}: {findings.write(configuration, name)}")
 
 
 def effective_config(input: str, *, scale: str, output: str, changes: str = "{}") -> None:
-    """Write the complete configuration of a scale, with changes to it in JSON."""
+    """Write the complete configuration of a scale, after changes to it in JSON."""
     from roughgas.config.study_folders import write_effective
 
-    changed = config.from_text(changes, "--changes", checked=True)
-    write_effective(config.load(input, changed), scale, output)
+    write_effective(config.load(input, from_json(changes, "--changes")), scale, output)
 
 
-STEPS: dict[str, str | Callable[..., None]] = {
-    "accuracy_data": "accuracy.running:combine",
-    "accuracy_figure": "accuracy.running:draw",
-    "accuracy_table": "accuracy.running:write_tables",
-    "accuracy_task": "accuracy.running:run_task",
+STEPS: dict[str, str | Function] = {
     "article": "results.article:write_article",
-    "codemeta": "results.products:write_codemeta",
-    "compile_kernels": compile_kernels,
+    "codemeta": "results.crate:write_codemeta",
     "claims": claims,
+    "combine": "tasks.running:combine",
+    "compile_kernels": compile_kernels,
     "document": "show.pages:write_document",
     "effective_config": effective_config,
-    "evidence": "results.evidence:combine",
-    "evidence_page": "results.evidence:write_page",
+    "evidence": "results.row_verdicts:combine",
+    "evidence_page": "results.evidence_page:write_page",
     "evidence_figure": "show.gallery:draw_evidence",
     "explore": "show.explore:write_page",
     "figure": "show.gallery:draw",
+    "fix_criteria": fix_criteria,
     "front": "show.pages:write_front",
+    "long_table": "claims.published:write_long",
     "living": "show.living:write_living",
     "numbers": "claims.numbers:write",
-    "run_times": "results.products:write_times",
-    "study_claims": study_claims,
+    "run_times": "results.tables:write_times",
     "study_evidence": "claims.published:write",
-    "study_data": "tasks.running:combine",
-    "study_figure": "show.gallery:draw_of_study",
     "study_movie": "show.gallery:movie_of_study",
     "study_page": "show.pages:write_study",
     "study_slides": "show.slides:write_slides",
-    "study_task": "tasks.running:run_task",
-    "table": "results.products:write_table",
+    "task": "tasks.running:run_task",
+    "table": "results.tables:write_table",
 }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a step (by default that of the process's own arguments) and return its exit status."""
-    return cli.status_of(_options, arguments)
+    """Run the step given by `arguments`, by default the process's, and return its exit status."""
+    return cli.status_of(_call_of, arguments)
 
 
-def _options(arguments: Sequence[str]) -> argparse.Namespace:
+def _call_of(arguments: Sequence[str]) -> tuple[Function, NamedValues]:
+    """Return the function of the step in a command line, and its arguments by name.
+
+    Only the parser of this step gets its arguments: others need not be imported.
+    """
     epilog = f"steps: {' '.join(STEPS)}; `STEP --help` explains one"
     parser = Parser(prog="python -m roughgas.steps", description=__doc__, epilog=epilog)
     parsers = parser.add_subparsers(metavar="STEP", required=True)
     for name, step in STEPS.items():
-        one = parsers.add_parser(name)
+        subparser = parsers.add_parser(name)
         if arguments[:1] == [name]:
             if isinstance(step, str):
                 module, _, function = step.partition(":")
                 step = getattr(import_module(f"roughgas.{module}"), function)
-            one.description = inspect.getdoc(step)
-            for parameter in inspect.signature(step).parameters.values():
-                _add(one, parameter)
-            one.set_defaults(command=partial(_call, step))
-    return parser.parse_args(arguments)
-
-
-def _add(parser: argparse.ArgumentParser, parameter: inspect.Parameter) -> None:
-    """Add a parameter of a step to its parser."""
-    name, kind, default = parameter.name, parameter.annotation, parameter.default
-    many = "+" if get_origin(kind) in (list, Iterable, Sequence) else None
-    if parameter.kind is not parameter.KEYWORD_ONLY:
-        parser.add_argument(name, nargs=many)
-        return
-    names = [*(["-o"] if name == "output" else []), f"--{name.replace('_', '-')}"]
-    if kind is bool:
-        parser.add_argument(*names, action="store_true")
-    elif default is parameter.empty:
-        parser.add_argument(*names, nargs=many, required=True)
-    else:
-        parser.add_argument(*names, nargs=many, default=default)
-
-
-def _call(step: Callable[..., Any], options: argparse.Namespace) -> None:
-    step(**{name: one for name, one in vars(options).items() if name != "command"})
+            subparser.description = inspect.getdoc(step)
+            add_arguments(subparser, step)
+    return parser.call_of(arguments)
 
 
 if __name__ == "__main__":

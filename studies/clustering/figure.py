@@ -1,4 +1,4 @@
-"""A picture of a cooling gas that forms clusters."""
+"""Pictures of a cooling gas that forms clusters."""
 
 from typing import Any
 
@@ -13,16 +13,16 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from roughgas import theory
-from roughgas.plotting import LOOKS, THEORY, Style, add_circles, move_circles
+from roughgas.plotting import LINE_STYLES, THEORY, Style, add_circles, move_circles
 
 SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
-SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
+SMOOTHING = 6.0  # a: standard deviation of the Gaussian that smooths the packing
 PACKING: Style = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
 SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
 SPIN_LABEL, PACKING_LABEL = "spin / its r.m.s.", "packing fraction"
 VOID = "#222222"
-CLOSEUP = 160.0  # side in a of the square in which single disks are shown
-TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in LOOKS[:3])
+CLOSEUP = 160.0  # a: side of the close-up of single disks
+TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in LINE_STYLES[:3])
 DOTTED: Style = {"color": THEORY, "linestyle": ":"}
 LETTERS, TITLE = "abc", 8
 SIZE = (7.0, 5.0)  # inches, of the picture
@@ -30,28 +30,31 @@ PER_PARTICLE = "collisions per particle"
 
 
 def draw(film: xr.Dataset) -> Figure:
-    """Return maps of packing at three instants, single disks, and how the gas cooled meanwhile."""
+    """Draw maps of packing at three instants, single disks, and energies, R and unevenness over
+    time."""
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = np.asarray(figure.subfigures(2, 1, height_ratios=(1, 1.02)))
     frames = [round(share * (film.sizes["frame"] - 1)) for share in SHOWN]
     maps = above.subplots(1, 3, sharey=True)
     for axes, frame, letter in zip(maps, frames, LETTERS, strict=True):
         image = draw_map(axes, film, frame)
-        axes.set_title(f"{letter}   {passed(film, frame)}", loc="left", fontsize=TITLE)
+        axes.set_title(f"{letter}   {collisions_label(film, frame)}", loc="left", fontsize=TITLE)
         axes.label_outer()
     above.colorbar(image, ax=maps, label=PACKING_LABEL, pad=0.01)
     square = outline(maps[-1], film)
     above.suptitle(caption(film), fontsize=TITLE)
-    zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
+    zoom, cooling, graphs_column = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
     disks = draw_disks(axes := zoom.subplots(), film, frames[-1], square)
     axes.set_title("d   the square in c", loc="left", fontsize=TITLE)
     zoom.colorbar(disks, ax=axes, label=SPIN_LABEL, shrink=0.62, pad=0.02)
-    graphs = [cooling.subplots(), *others.subplots(2, 1, sharex=True)]
-    for axes, draw_graph in zip(graphs, (energies, share, _unevenness), strict=True):
+    graphs = [cooling.subplots(), *graphs_column.subplots(2, 1, sharex=True)]
+    for axes, draw_graph in zip(graphs, (energies, share, unevenness), strict=True):
         draw_graph(axes, film)
-        axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper"))  # the last number would be cut
-        for at in passed_at(film)[frames]:
-            axes.axvline(at, ymax=0.05, color=THEORY, linewidth=0.8)
+        axes.xaxis.set_major_locator(
+            MaxNLocator(5, prune="upper")
+        )  # the last label would be cut off
+        for collisions in collisions_so_far(film)[frames]:
+            axes.axvline(collisions, ymax=0.05, color=THEORY, linewidth=0.8)
         axes.label_outer()
     return figure
 
@@ -66,10 +69,11 @@ def packing(film: xr.Dataset, frame: int) -> np.ndarray:
     return np.fft.irfft2(np.fft.rfft2(count * (np.pi / (dx * dy))) * kernel, s=count.shape)
 
 
-def closeup(film: xr.Dataset) -> tuple[float, float, float]:
-    """Return the square in which single disks are shown: left, bottom and side, in a.
+def closeup_square(film: xr.Dataset) -> tuple[float, float, float]:
+    """Return the square of the close-up of single disks: left, bottom and side, in a.
 
-    It lies where the gas is densest in the end, within the window in which disks are known.
+    It lies where the gas is densest in the last frame, within the window for which disks are
+    stored.
     """
     box, window = np.asarray(film.attrs["box"]), film.attrs["window"]
     side = min(CLOSEUP, window, *box)
@@ -92,7 +96,7 @@ def draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
 
 
 def _add_scale_bar(axes: Axes) -> None:
-    """Say how long lengths are, in a, by a bar instead of numbers along the axes."""
+    """Add a bar with its length in a, in place of numbers along the axes."""
     low, high = axes.get_xlim()
     power = 10.0 ** np.floor(np.log10((high - low) / 4))
     length = max(step * power for step in (1, 2, 5) if step * power <= (high - low) / 4)
@@ -103,7 +107,7 @@ def _add_scale_bar(axes: Axes) -> None:
 
 def outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
     """Outline the square on a map, and return it."""
-    left, bottom, side = square = closeup(film)
+    left, bottom, side = square = closeup_square(film)
     axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
     return square
 
@@ -119,26 +123,26 @@ def draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> Ellip
 
 
 def move_disks(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
-    x, y, spin = _disks(film, frame)
+    x, y, spin = _disks_in_window(film, frame)
     axes: Any = disks.axes
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    seen = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
-    move_circles(disks, x[seen], y[seen])
-    disks.set_array(spin[seen])
+    visible = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
+    move_circles(disks, x[visible], y[visible])
+    disks.set_array(spin[visible])
 
 
-def passed_at(film: xr.Dataset) -> np.ndarray:
+def collisions_so_far(film: xr.Dataset) -> np.ndarray:
     return film.collisions_per_particle.values
 
 
-def _homogeneous(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
+def _homogeneous_gas(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
     """Return collisions per particle, and the temperatures of a gas that stays homogeneous."""
-    n, about = np.linspace(0, passed_at(film)[-1], 1000), film.attrs
-    return n, theory.relax(0.0, about["r"], about["beta"], n, 2, about["inertia"])
+    n, attributes = np.linspace(0, collisions_so_far(film)[-1], 1000), film.attrs
+    return n, theory.relax(0.0, attributes["r"], attributes["beta"], n, 2, attributes["inertia"])
 
 
 def energies(axes: Axes, film: xr.Dataset) -> None:
-    n, (smooth, haff) = passed_at(film), _homogeneous(film)
+    n, (smooth, haff) = collisions_so_far(film), _homogeneous_gas(film)
     axes.plot(n, film.E_trans, color=TRANSLATION, label="translation")
     axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label="rotation")
     axes.plot(smooth, haff.T_tr, label="homogeneous", **DOTTED)
@@ -146,40 +150,48 @@ def energies(axes: Axes, film: xr.Dataset) -> None:
     low = film.E_rot.values[1:].min()
     axes.set(yscale="log", ylim=(low / 4, 3), xlim=(0, n[-1]))
     axes.set(xlabel=PER_PARTICLE, ylabel=r"energies / initial $E_\mathrm{trans}$")
-    axes.set_title("e   energies leave Haff's law", loc="left", fontsize=TITLE)
+    axes.set_title("e   energies, and Haff's law", loc="left", fontsize=TITLE)
     axes.legend()
 
 
 def share(axes: Axes, film: xr.Dataset) -> None:
-    smooth, haff = _homogeneous(film)
-    axes.plot(passed_at(film), film.R, color=ROTATION)
+    smooth, haff = _homogeneous_gas(film)
+    axes.plot(collisions_so_far(film), film.R, color=ROTATION)
     axes.plot(smooth, haff.theta / (1 + haff.theta), label="homogeneous", **DOTTED)
-    axes.set(ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, passed_at(film)[-1]), ylim=(0, None))
+    axes.set(
+        ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, collisions_so_far(film)[-1]), ylim=(0, None)
+    )
     axes.set_title("f   share of rotation", loc="left", fontsize=TITLE)
     axes.legend(loc="best")
 
 
-def _unevenness(axes: Axes, film: xr.Dataset) -> None:
+def unevenness(axes: Axes, film: xr.Dataset) -> None:
     maps = [packing(film, frame) for frame in range(film.sizes["frame"])]
-    axes.plot(passed_at(film), [one.std() / one.mean() for one in maps], color=UNEVENNESS)
+    axes.plot(
+        collisions_so_far(film), [field.std() / field.mean() for field in maps], color=UNEVENNESS
+    )
     axes.set(xlabel=PER_PARTICLE, ylabel=r"$\delta\phi/\phi$", ylim=(0, None))
     axes.set_title("g   uneven packing", loc="left", fontsize=TITLE)
 
 
-def passed(film: xr.Dataset, frame: int) -> str:
-    return f"{passed_at(film)[frame]:.0f} {PER_PARTICLE}"
+def collisions_label(film: xr.Dataset, frame: int) -> str:
+    return f"{collisions_so_far(film)[frame]:.0f} {PER_PARTICLE}"
 
 
 def caption(film: xr.Dataset) -> str:
-    about = film.attrs
+    attrs = film.attrs
     return (
-        f"Cooling gas of $N = {about['particles']:,}$ rough disks, "
-        rf"$r = {about['r']:g}$, $\beta = {about['beta']:g}$, packing {about['packing']:.2g}"
+        f"Cooling gas of $N = {attrs['particles']:,}$ rough disks, "
+        rf"$r = {attrs['r']:g}$, $\beta = {attrs['beta']:g}$, packing {attrs['packing']:.2g}"
     )
 
 
-def _disks(film: xr.Dataset, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _disks_in_window(film: xr.Dataset, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return x and y (a) and spin (in units of its root mean square) of the disks in the window."""
     ends = np.cumsum(film.disks.values)
-    one = slice(ends[frame] - film.disks.values[frame], ends[frame])
-    return film.disk_x.values[one], film.disk_y.values[one], film.disk_spin.values[one]
+    disks_of_frame = slice(ends[frame] - film.disks.values[frame], ends[frame])
+    return (
+        film.disk_x.values[disks_of_frame],
+        film.disk_y.values[disks_of_frame],
+        film.disk_spin.values[disks_of_frame],
+    )

@@ -14,14 +14,14 @@ from .figure import (
     SPIN_LABEL,
     TITLE,
     caption,
+    collisions_label,
+    collisions_so_far,
     draw_disks,
     draw_map,
     energies,
     move_disks,
     outline,
     packing,
-    passed,
-    passed_at,
     share,
 )
 
@@ -36,13 +36,13 @@ def draw(film: xr.Dataset, path: Path) -> None:
 
 
 def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
-    """Return a figure of the gas, and a function that brings it to a frame."""
+    """Return a figure of the gas, and a function that updates it to a frame."""
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
     squares, graphs = np.asarray(figure.subfigures(1, 2, width_ratios=(2.5, 1)))
-    whole, zoom = squares.subplots(1, 2)
-    image = draw_map(whole, film, 0)
-    disks = draw_disks(zoom, film, 0, outline(whole, film))
-    for mappable, axes, label in ((image, whole, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
+    full_map, zoom = squares.subplots(1, 2)
+    image = draw_map(full_map, film, 0)
+    disks = draw_disks(zoom, film, 0, outline(full_map, film))
+    for mappable, axes, label in ((image, full_map, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
         squares.colorbar(mappable, ax=axes, label=label, location="bottom", shrink=0.8)
     zoom.set_title("the square", fontsize=TITLE)
     squares.suptitle(caption(film), fontsize=TITLE)
@@ -58,9 +58,9 @@ def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
     def show(frame: int) -> None:
         image.set_data(packing(film, frame))
         move_disks(disks, film, frame)
-        whole.set_title(passed(film, frame), fontsize=TITLE)
+        full_map.set_title(collisions_label(film, frame), fontsize=TITLE)
         for mark in marks:
-            mark.set_xdata([passed_at(film)[frame]] * 2)
+            mark.set_xdata([collisions_so_far(film)[frame]] * 2)
 
     show(0)
     return figure, show

@@ -1,8 +1,8 @@
 """A cooling gas of many particles, filmed until it forms clusters.
 
-The run is a series of equal legs, each of which ends with a frame. All that one leg hands over to
-the next is in the gas and in the film so far. A checkpoint holds both, so that a run that goes on
-from one gives the same bits as a run that never wrote any.
+The run is a series of equal legs; a frame is taken after each. The state between two legs is the
+gas and all frames to date. A checkpoint holds both, so that a resumed run gives the same bits as an
+uninterrupted one.
 """
 
 import sys
@@ -12,29 +12,29 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.gas import DIAMETER, Gas, UnusableCheckpoint, build, restored
+from roughgas.gas import DIAMETER, Gas, SceneSettings, UnusableCheckpoint, build, restored
 from roughgas.theory import packing_fraction
 
-EVERY = 10
-"""Frames from one checkpoint to the next."""
+CHECKPOINT_INTERVAL = 10
+"""Frames between two checkpoints."""
 DIMS = {"count": ("frame", "y", "x"), "x": ("x",), "y": ("y",)}
 DIMS |= dict.fromkeys(("disk_x", "disk_y", "disk_spin"), ("disk",))
-OF_FRAMES = ("time", "collisions_per_particle", "E_trans", "E_rot", "R", "disks")
-DIMS |= dict.fromkeys(OF_FRAMES, ("frame",))
+FRAME_VARIABLES = ("time", "collisions_per_particle", "E_trans", "E_rot", "R", "disks")
+DIMS |= dict.fromkeys(FRAME_VARIABLES, ("frame",))
 
 Film = dict[str, list[np.ndarray]]
-"""By variable, arrays whose first axis is that of the frames, or of the disks in them."""
+"""Arrays by variable; their first axis runs over the frames, or over the disks in them."""
 
 
 def tasks(settings: Mapping[str, Any]) -> list[str]:
-    """Return the name of the one task."""
+    """Return the name of the only task."""
     return ["film"]
 
 
 def run(
     task: str,
     settings: Mapping[str, Any],
-    experiments: Mapping[str, Any],
+    experiments: Mapping[str, SceneSettings],
     progress: Callable[[int, int], None],
     checkpoint: tuple,
 ) -> xr.Dataset:
@@ -57,16 +57,17 @@ def run(
     for frame in range(first, last + 1):
         gas.in_collisions(leg, 1)
         _add_frame(film, frame * leg, gas, settings)
-        if frame % EVERY == 0 and frame < last:
+        if frame % CHECKPOINT_INTERVAL == 0 and frame < last:
             gas.save(*checkpoint, _joined(film))
         progress(frame, last)
-    found = _variables(film, gas, settings)
-    columns = {name: (DIMS.get(name, ()), values) for name, values in found.items()}
+    values = _variables(film, gas, settings)
+    columns = {name: (DIMS.get(name, ()), column) for name, column in values.items()}
     return xr.Dataset(columns, attrs=_attributes(settings, experiment))
 
 
 def _film_so_far(gas: Gas, checkpoint: tuple) -> Film:
-    """Return what a run that was stopped has filmed, and bring `gas` to its end; else nothing."""
+    """Return the film of an interrupted run, and restore `gas` at its end; {} without a
+    checkpoint."""
     try:
         saved = gas.restore(*checkpoint)
     except FileNotFoundError:
@@ -79,35 +80,35 @@ def _film_so_far(gas: Gas, checkpoint: tuple) -> Film:
 
 
 def _joined(film: Film) -> dict[str, np.ndarray]:
-    return {name: np.concatenate(parts) for name, parts in film.items()}
+    return {name: np.concatenate(arrays) for name, arrays in film.items()}
 
 
 def _add_frame(film: Film, collisions: int, gas: Gas, settings: Mapping[str, Any]) -> None:
-    """Add the frame of a gas just refreshed, so many collisions since it began to cool."""
+    """Add the frame of a gas just refreshed, `collisions` after the start of its cooling."""
     box = gas.scene.box
     E_trans, E_rot = restored(gas.energies(gas.sample), gas.sample["exponent"])
     x, y = gas.positions_and_velocities()[0].T
     spin = gas.spins()[:, 0]
     scale = np.sqrt(np.mean(spin**2)) or 1.0
     reach = (settings["window"] + DIAMETER) / 2
-    seen = (abs(x - box[0] / 2) < reach) & (abs(y - box[1] / 2) < reach)
-    added = {
+    visible = (abs(x - box[0] / 2) < reach) & (abs(y - box[1] / 2) < reach)
+    frame_values = {
         "time": gas.sample["time"],
         "collisions_per_particle": np.array([collisions * 2.0 / gas.particles]),
         "E_trans": E_trans,
         "E_rot": E_rot,
         "count": count(x, y, box, settings["cell"])[None],
-        "disks": np.array([seen.sum()], np.int32),
-        "disk_x": x[seen].astype(np.float32),
-        "disk_y": y[seen].astype(np.float32),
-        "disk_spin": (spin[seen] / scale).astype(np.float32),
+        "disks": np.array([visible.sum()], np.int32),
+        "disk_x": x[visible].astype(np.float32),
+        "disk_y": y[visible].astype(np.float32),
+        "disk_spin": (spin[visible] / scale).astype(np.float32),
     }
-    for name, values in added.items():
+    for name, values in frame_values.items():
         film.setdefault(name, []).append(values)
 
 
 def _cells(length: float, cell: float) -> int:
-    """Return the number of cells, each about as long as `cell`, that divide a side of the box."""
+    """Return the number of cells of about the length `cell` that divide a side of the box."""
     return max(1, round(length / cell))
 
 
@@ -117,21 +118,21 @@ def count(x: np.ndarray, y: np.ndarray, box: tuple, cell: float) -> np.ndarray:
     # rounding can fold a particle onto the far edge
     i = np.minimum((x * (columns / box[0])).astype(int), columns - 1)
     j = np.minimum((y * (lines / box[1])).astype(int), lines - 1)
-    found = np.bincount(columns * j + i, minlength=columns * lines)
-    return found.reshape(lines, columns).astype(np.uint16)
+    counts = np.bincount(columns * j + i, minlength=columns * lines)
+    return counts.reshape(lines, columns).astype(np.uint16)
 
 
 def _variables(film: Film, gas: Gas, settings: Mapping[str, Any]) -> dict[str, Any]:
-    found, costs, model = _joined(film), gas.recorder, gas.scene.effects.contact_time
-    start = found["E_trans"][0]
+    values, costs, model = _joined(film), gas.costs, gas.scene.effects.contact_time
+    start = values["E_trans"][0]
     for name, length in zip("xy", gas.scene.box, strict=True):
         number = _cells(length, settings["cell"])
-        found[name] = (np.arange(number) + 0.5) * (length / number)
-    return found | {
-        "time": found["time"] - found["time"][0],
-        "E_trans": found["E_trans"] / start,
-        "E_rot": found["E_rot"] / start,
-        "R": found["E_rot"] / (found["E_rot"] + found["E_trans"]),
+        values[name] = (np.arange(number) + 0.5) * (length / number)
+    return values | {
+        "time": values["time"] - values["time"][0],
+        "E_trans": values["E_trans"] / start,
+        "E_rot": values["E_rot"] / start,
+        "R": values["E_rot"] / (values["E_rot"] + values["E_trans"]),
         "E_trans_start": start,
         "contact_time": np.nan if model is None else model.duration,
         "contact_time_fraction": costs.touched / max(1, costs.collisions),
@@ -140,9 +141,13 @@ def _variables(film: Film, gas: Gas, settings: Mapping[str, Any]) -> dict[str, A
     }
 
 
-def _attributes(settings: Mapping[str, Any], experiment: Mapping[str, Any]) -> dict[str, Any]:
-    number, box = experiment["particles"], [float(length) for length in experiment["box"]]
-    about = {"r": float(settings["r"]), "beta": float(settings["beta"]), "seed": settings["seed"]}
-    about |= {"particles": number, "inertia": experiment["effects"]["spin"]["inertia"], "box": box}
-    about["window"] = float(settings["window"])
-    return about | {"packing": packing_fraction(number, box)}
+def _attributes(settings: Mapping[str, Any], experiment: SceneSettings) -> dict[str, Any]:
+    number, box = experiment.particles, list(experiment.box)
+    attributes = {
+        "r": float(settings["r"]),
+        "beta": float(settings["beta"]),
+        "seed": settings["seed"],
+    }
+    attributes |= {"particles": number, "inertia": experiment.effects["spin"].inertia, "box": box}
+    attributes["window"] = float(settings["window"])
+    return attributes | {"packing": packing_fraction(number, box)}

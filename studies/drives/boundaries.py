@@ -1,7 +1,8 @@
-"""What the boundaries are made of, and how far that shifts R.
+"""Shift of R by the roughness of the boundaries.
 
-Shifts are from the same bed with a smooth boundary, beside those that the rate equations expect of
-the measured share of rotation: what sets a bed apart from theory anyway is not shown (Fig. 1a is).
+Shifts are from the same bed with a smooth boundary, next to the shifts that the rate equations
+predict from the measured share of rotation. So deviations of the bed itself from theory do not show
+(see Fig. 1a).
 """
 
 import numpy as np
@@ -13,7 +14,11 @@ from roughgas import plotting
 from roughgas.plotting import THEORY, TWO_WIDE, InputError
 
 SMOOTH = -1.0
-MESSAGE = "Boundaries shift R by the spin they put in"
+PANELS = {
+    "Rough floor": ("only_spinning_floors_matter", "Shift of R by a rough floor"),
+    "Rough side walls": ("only_spinning_walls_matter", "Shift of R by rough side walls"),
+}
+"""Statement that titles a panel where it holds, and its title elsewhere."""
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
@@ -22,31 +27,34 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
     Raises InputError where a sweep has no smooth boundary.
     """
     figure = Figure(figsize=(TWO_WIDE, 3.2), layout="constrained")
-    both = figure.subplots(1, 2, sharey=True)
+    panels = figure.subplots(1, 2, sharey=True)
     drawn: list[plotting.Series] = []
-    parts = (floor, "Rough floor", MESSAGE), (walls, "Rough side walls", "")
-    for axes, (data, name, message) in zip(both, parts, strict=True):
+    for axes, data, (name, title) in zip(panels, (floor, walls), PANELS.items(), strict=True):
         if SMOOTH not in data.roughness:
-            given = data.roughness.values
-            raise InputError(f"roughness of {data.attrs['experiment']}", given, "include -1")
-        drawn += (series := plotting.series_for_each(data, "beta"))
-        for one in series:
-            _draw_shift(axes, one)
+            roughness = data.roughness.values
+            raise InputError(f"roughness of {data.attrs['experiment']}", roughness, "include -1")
+        drawn += (curves := plotting.series_for_each(data, "beta"))
+        for curve in curves:
+            _draw_shift(axes, curve)
         axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
         plotting.ROUGHNESS.prepare(axes)
+        statement, title_of_data = title
+        message = plotting.judged_title(__file__, statement, [data], title_of_data)
         plotting.add_title(axes, [data], rf"{name}, $r = {plotting.RESTITUTION:g}$", message)
-    both[0].legend(title="dashes: rate equations", loc="upper left")
+    panels[0].legend(title="dashes: rate equations", loc="upper left")
     plotting.add_notes(figure, drawn)
-    both[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
+    panels[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     return figure
 
 
-def _draw_shift(axes: Axes, one: plotting.Series) -> None:
+def _draw_shift(axes: Axes, series: plotting.Series) -> None:
     """Draw the shift of R from the smooth boundary, measured and expected."""
-    smooth, rough = one.data.sel(roughness=SMOOTH), one.at > SMOOTH
-    error = np.hypot(one.data.R_stderr, smooth.R_stderr).where(rough, 0)
-    shifted = one._replace(data=one.data.assign(R_stderr=error))
-    expected = one.predict(spin_share=one.data.input_spin_share.values) - one.predict(spin_share=0)
-    axes.plot(one.at, expected, "_", color=one.look.colour, markersize=11, zorder=1)
-    plotting.draw_points(axes, shifted, one.at, (one.data.R - smooth.R).values)
-    axes.plot([], [], one.look.marker, color=one.look.colour, label=one.label)
+    smooth, rough = series.data.sel(roughness=SMOOTH), series.x > SMOOTH
+    error = np.hypot(series.data.R_stderr, smooth.R_stderr).where(rough, 0)
+    shifted = series._replace(data=series.data.assign(R_stderr=error))
+    expected = series.predict(spin_share=series.data.input_spin_share.values) - series.predict(
+        spin_share=0
+    )
+    axes.plot(series.x, expected, "_", color=series.line_style.colour, markersize=11, zorder=1)
+    plotting.draw_points(axes, shifted, series.x, (series.data.R - smooth.R).values)
+    axes.plot([], [], series.line_style.marker, color=series.line_style.colour, label=series.label)

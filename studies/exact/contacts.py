@@ -1,10 +1,9 @@
-"""Single contacts of Walton's model: what each does to velocities and spins.
+"""Single contacts of Walton's model: changes of velocities and spins against closed forms.
 
-A few particles fly between two walls that move along themselves, and are looked at so often that
-one contact at most has happened in between. n points from particle 2 to particle 1, or from a wall
-into the gas; v, v' and w, w' are velocities and spins (a = m = 1) before and after, J = v' - v the
-impulse on the first one, and g = v1 - v2 - (w1 + w2) x n the velocity of the contact, at a wall
-v - V - w x n.
+A few particles fly between two walls that move along themselves, and are sampled at intervals with
+at most one contact each. n points from particle 2 to particle 1, or from a wall into the gas; v, v'
+and w, w' are velocities and spins (a = m = 1) before and after, J = v' - v is the impulse on
+particle 1, and g = v1 - v2 - (w1 + w2) x n is the velocity of the contact, at a wall v - V - w x n.
 """
 
 import math
@@ -13,87 +12,90 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas import theory
-from roughgas.gas import Gas, build
+from roughgas.gas import Gas, build, scene_settings
 
 HEIGHT, WIDTH = 12.0, 10.0  # of the box, in a
-LOOK = 0.1  # T between two looks
-SPEED = 1.0  # of the lower wall, in a/T; the upper one moves the other way
-SLIDES = 1e-9  # a contact whose impulses are that near to the ratio mu, slides
-FAR = 4000.0  # width of the box in which two particles roll and do not meet
-ROLLED = 400.0  # T until all of them roll
+SAMPLING_INTERVAL = 0.1  # T
+WALL_SPEED = 1.0  # of the lower wall, in a/T; the upper one moves the other way
+SLIDING_TOLERANCE = 1e-9  # relative; a contact slides whose impulses have the ratio mu within it
+ROLLING_WIDTH = 4000.0  # a: width of a box whose two particles roll and do not meet
+ROLLING_TIME = 400.0  # T until all of them roll
 
 
 class Contact(NamedTuple):
-    """What was seen of one contact."""
+    """Measured vectors of one contact, each of shape (3,)."""
 
     wall: bool
-    n: np.ndarray  # (3,), as all vectors
+    n: np.ndarray
     impulse: np.ndarray
-    turn: np.ndarray  # w' - w of the first particle
+    turn: np.ndarray  # w' - w of particle 1
     before: np.ndarray  # g
     after: np.ndarray  # g'
 
 
-def find(about, dimension, seed) -> dict[str, np.ndarray]:
-    """Return numbers that have a closed form by name, one for each contact.
+def measure(settings, dimension, seed) -> dict[str, np.ndarray]:
+    """Return quantities that have a closed form by name, one value for each contact.
 
-    `threshold` is mu over (J_t/J_n)/(g_t/g_n) of contacts that stick: the g_t/g_n from which on
-    they would slide. `misplaced` is 1 for a contact on the wrong side of the closed form.
+    `threshold` is mu over (J_t/J_n)/(g_t/g_n) of contacts that stick: the g_t/g_n beyond which they
+    would slide. `misplaced` is 1 for a contact on the wrong side of the closed form.
     """
-    contacts = _seen(about, dimension, seed)
-    found = {"rolling": _rolling(about, dimension, seed.spawn(1)[0])}
-    for wall, place in ((False, "pair"), (True, "wall")):
-        these = [one for one in contacts if one.wall == wall]
-        found |= {f"{name}_{place}": x for name, x in _numbers(these, about, dimension).items()}
-    return found
+    contacts = _observed_contacts(settings, dimension, seed)
+    values = {"rolling": _rolling_speed(settings, dimension, seed.spawn(1)[0])}
+    for wall, kind in ((False, "pair"), (True, "wall")):
+        selected = [contact for contact in contacts if contact.wall == wall]
+        values |= {
+            f"{name}_{kind}": x
+            for name, x in _closed_form_ratios(selected, settings, dimension).items()
+        }
+    return values
 
 
-def threshold(about, dimension) -> float:
-    """Return tan(theta) = g_t/g_n from which on contacts slide."""
+def threshold(settings, dimension) -> float:
+    """Return tan(theta) = g_t/g_n, beyond which contacts slide."""
     q = theory.moment_of_inertia(dimension)
-    r, beta = about["restitution"], about["roughness"]
-    return (1.0 + 1.0 / q) * about["mu"] * (1.0 + r) / (1.0 + beta)
+    r, beta = settings["restitution"], settings["roughness"]
+    return (1.0 + 1.0 / q) * settings["mu"] * (1.0 + r) / (1.0 + beta)
 
 
-def _numbers(contacts, about, dimension):
+def _closed_form_ratios(contacts, settings, dimension):
     columns = list(zip(*contacts, strict=True))[1:]
     n, impulse, turn, before, after = (np.array(column) for column in columns)
     normal, slip, slip_after = _along(before, n), _across(before, n), _across(after, n)
     pushed, dragged = _along(impulse, n), _across(impulse, n)
-    friction = _size(dragged) / np.abs(pushed)
-    tangent = _size(slip) / np.abs(normal)
-    sticks = friction < about["mu"] * (1.0 - SLIDES)
+    friction = _norm(dragged) / np.abs(pushed)
+    tangent = _norm(slip) / np.abs(normal)
+    sticks = friction < settings["mu"] * (1.0 - SLIDING_TOLERANCE)
     torque = -np.cross(n, impulse)
     q = theory.moment_of_inertia(dimension)
     return {
         "restitution": -_along(after, n) / normal,
         "roughness": (-_along(slip_after, slip) / _along(slip, slip))[sticks],
         "friction": friction[~sticks],
-        "threshold": about["mu"] * (tangent / friction)[sticks],
+        "threshold": settings["mu"] * (tangent / friction)[sticks],
         "turn": q * _along(turn, torque) / _along(torque, torque),
-        "misplaced": (sticks != (tangent < threshold(about, dimension))).astype(float),
+        "misplaced": (sticks != (tangent < threshold(settings, dimension))).astype(float),
     }
 
 
-def _seen(about, dimension, seed) -> list[Contact]:
-    """Return contacts, at least as many as asked for both of pairs and of walls."""
-    wall = {name: about[name] for name in ("restitution", "roughness")}
+def _observed_contacts(settings, dimension, seed) -> list[Contact]:
+    """Return contacts, at least settings["contacts"] both of pairs and of walls."""
+    wall = {name: settings[name] for name in ("restitution", "roughness")}
     walls = {
-        "bottom_wall": {**wall, "velocity": SPEED},
-        "lid": {**wall, "velocity": -SPEED},
+        "bottom_wall": {**wall, "velocity": WALL_SPEED},
+        "lid": {**wall, "velocity": -WALL_SPEED},
     }
     box = [WIDTH] * (dimension - 1) + [HEIGHT]
-    gas = _gas(about, dimension, 12, box, walls, seed)
+    gas = _gas(settings, dimension, 12, box, walls, seed)
     contacts: list[Contact] = []
-    seen = {True: 0, False: 0}
-    while min(seen.values()) < about["contacts"]:
+    counts = {True: 0, False: 0}
+    while min(counts.values()) < settings["contacts"]:
         velocity, spin = _motion(gas)
-        height, since = gas.positions_and_velocities()[0][:, -1], gas.time
-        paired = gas.step(gas.time + LOOK, 1)
-        now, spun = _motion(gas)
-        flown = height + velocity[:, dimension - 1] * (gas.time - since)
+        height, start = gas.positions_and_velocities()[0][:, -1], gas.time
+        paired = gas.step(gas.time + SAMPLING_INTERVAL, 1)
+        new_velocity, new_spin = _motion(gas)
+        flown = height + velocity[:, dimension - 1] * (gas.time - start)
         met_wall = (flown < 1.0) | (flown > HEIGHT - 1.0)
-        moved = np.flatnonzero(np.any(spun != spin, axis=1))
+        moved = np.flatnonzero(np.any(new_spin != spin, axis=1))
         if paired and len(moved) == 2 and not met_wall[moved].any():
             i, j, position = gas.last_contact()
             away = position[0] - position[1]
@@ -101,44 +103,47 @@ def _seen(about, dimension, seed) -> list[Contact]:
             n = 0.5 * _vector(away[None])[0]
         elif not paired and len(moved) == 1:
             i = j = int(moved[0])
-            n = np.eye(3)[dimension - 1] * math.copysign(1.0, now[i, dimension - 1])
+            n = np.eye(3)[dimension - 1] * math.copysign(1.0, new_velocity[i, dimension - 1])
         else:
             continue
-        before, after = (_slip(v, w, i, j, n) for v, w in ((velocity, spin), (now, spun)))
-        impulse, turn = now[i] - velocity[i], spun[i] - spin[i]
+        before, after = (
+            _slip(v, w, i, j, n) for v, w in ((velocity, spin), (new_velocity, new_spin))
+        )
+        impulse, turn = new_velocity[i] - velocity[i], new_spin[i] - spin[i]
         contacts.append(Contact(i == j, n, impulse, turn, before, after))
-        seen[i == j] += 1
+        counts[i == j] += 1
     return contacts
 
 
 def _slip(velocity, spin, i, j, n):
-    """Return the velocity of the contact of two particles, or of one with a wall (i = j)."""
+    """Return the velocity of the contact of two particles, or of a particle and a wall (i = j)."""
     if i == j:
-        wall = np.array([math.copysign(SPEED, n.sum()), 0.0, 0.0])
+        wall = np.array([math.copysign(WALL_SPEED, n.sum()), 0.0, 0.0])
         return velocity[i] - wall - np.cross(spin[i], n)
     return velocity[i] - velocity[j] - np.cross(spin[i] + spin[j], n)
 
 
-def _rolling(about, dimension, seed) -> np.ndarray:
-    """Return v over v_0 of two particles that bounce on a floor, without spin at first, and slide
-    until they roll, since contacts that stick take all slip."""
+def _rolling_speed(settings, dimension, seed) -> np.ndarray:
+    """Return v over v_0 of two particles that bounce on a floor. They have no spin at first, and
+    slide until they roll, since contacts that stick take all slip."""
     floor = {"amplitude": 0.0, "period": 1.0, "restitution": 1.0, "roughness": 0.0}
     effects = {"gravity": {"acceleration": 1.0}, "floor": floor}
-    gas = _gas(about, dimension, 2, [FAR] * (dimension - 1) + ["open"], effects, seed)
+    gas = _gas(settings, dimension, 2, [ROLLING_WIDTH] * (dimension - 1) + ["open"], effects, seed)
     gas.state.spin[:] = 0.0
-    begun = _motion(gas)[0][:, : dimension - 1]
-    gas.in_time(ROLLED, 1)
+    first_velocity = _motion(gas)[0][:, : dimension - 1]
+    gas.in_time(ROLLING_TIME, 1)
     if gas.collisions:
         raise ValueError("particles that should roll have met")
-    ended = _motion(gas)[0][:, : dimension - 1]
-    return _size(ended) / _size(begun)
+    last_velocity = _motion(gas)[0][:, : dimension - 1]
+    return _norm(last_velocity) / _norm(first_velocity)
 
 
-def _gas(about, dimension, particles, box, effects, seed):
+def _gas(settings, dimension, particles, box, effects, seed):
     q = theory.moment_of_inertia(dimension)
-    always = {"spin": {"inertia": q}, "friction": {"mu": about["mu"]}}
-    experiment = {"particles": particles, "box": box, "effects": always | effects}
-    scene = build(experiment, r=about["restitution"], beta=about["roughness"])
+    common_effects = {"spin": {"inertia": q}, "friction": {"mu": settings["mu"]}}
+    raw = {"particles": particles, "box": box, "effects": common_effects | effects}
+    experiment = scene_settings(raw)
+    scene = build(experiment, r=settings["restitution"], beta=settings["roughness"])
     return Gas.start(scene, experiment, np.random.default_rng(seed))
 
 
@@ -162,5 +167,5 @@ def _across(rows, n):
     return rows - _along(rows, n)[:, None] * n
 
 
-def _size(rows):
+def _norm(rows):
     return np.sqrt(_along(rows, rows))

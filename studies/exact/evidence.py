@@ -1,4 +1,4 @@
-"""Exact results and theories beside what was measured, row by row."""
+"""Exact results and theories next to our measurements, as rows of evidence."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -36,68 +36,72 @@ SONINE = "linear in a2, and a3 is left out"
 
 
 class Gas:
-    """What was measured of one gas."""
+    """The measured quantities of one gas."""
 
     def __init__(self, data: xr.Dataset, task: str) -> None:
         self._data, self.task = data, task
         self.kind, *parameters = task.split("_")
-        self.parameters = [float(one) for one in parameters]
+        self.parameters = [float(text) for text in parameters]
 
     def number(self, quantity: str) -> Estimate:
-        """Return a mean over runs with its error."""
-        found = self._data.isel(number=(self._data.task == self.task).values)
-        one = found.isel(number=(found.quantity == quantity).values).squeeze("number")
-        return Estimate(float(one.value), float(one.value_stderr), float(one.runs) - 1.0)
+        """Return the mean of a quantity over runs, with its error."""
+        of_task = self._data.isel(number=(self._data.task == self.task).values)
+        row = of_task.isel(number=(of_task.quantity == quantity).values).squeeze("number")
+        return Estimate(float(row.value), float(row.value_stderr), float(row.runs) - 1.0)
 
 
 def rows(data: xr.Dataset) -> list[Row]:
-    """Return every number for which there is a closed form or a theory, those of one comparison
-    together, and exact ones first."""
+    """Return a row for every quantity with a closed form or a theory: exact ones first, and rows of
+    one comparison next to each other."""
     gases = [Gas(data, str(task)) for task in data.task_name.values]
-    found = [row for gas in gases for row in OF_KIND[gas.kind](gas, data)] + _experiment(gases)
-    order = list(dict.fromkeys(map(_comparison, found)))
-    return sorted(found, key=lambda row: (row.tier != "exact", order.index(_comparison(row))))
+    all_rows = [row for gas in gases for row in ROWS_OF_KIND[gas.kind](gas, data)] + _experiment(
+        gases
+    )
+    order = list(dict.fromkeys(map(_comparison, all_rows)))
+    return sorted(all_rows, key=lambda row: (row.tier != "exact", order.index(_comparison(row))))
 
 
 def _comparison(row: Row) -> tuple[str, str, str]:
     return row.quantity, row.tier, row.source
 
 
-def _at(dimension: float, **place: float) -> str:
-    """Return such as "spheres, r = 0.9"."""
-    return ", ".join([NAMES[int(dimension)], *(f"{name} = {x:g}" for name, x in place.items())])
+def _state(dimension: float, **parameters: float) -> str:
+    """Return the text of a state, such as "spheres, r = 0.9"."""
+    return ", ".join(
+        [NAMES[int(dimension)], *(f"{name} = {x:g}" for name, x in parameters.items())]
+    )
 
 
-def _known(value: float) -> Estimate:
-    """Return a number of a closed form."""
+def _exact_value(value: float) -> Estimate:
+    """Return the value of a closed form as an Estimate without error."""
     return Estimate(value, 0.0)
 
 
 def _fluid(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension, packing = int(gas.parameters[0]), gas.parameters[1]
-    at = _at(dimension, packing=packing)
+    state = _state(dimension, packing=packing)
     exact = published.compressibility(packing, dimension)
-    missing = published.of_fixed_number(packing, dimension) / data.attrs["particles"]
+    missing = published.fixed_number_correction(packing, dimension) / data.attrs["particles"]
     series = {"tier": "exact", "source": CLISBY, "theirs": exact}
     series |= {"read": "virial series to B_10 (Table 1), its tail taken as geometric"}
     closed = {"tier": "theory", "source": HENDERSON if dimension == 2 else CARNAHAN}
-    approximate = _known(published.approximate_compressibility(packing, dimension))
+    approximate = _exact_value(published.approximate_compressibility(packing, dimension))
     closed |= {"read": CLOSED_FORM, "theirs": approximate}
-    ways = {"stress": "momentum transfer", "collisions": "the collision rate"}
-    for name, known in (("stress", series), ("collisions", series), ("stress", closed)):
-        found = gas.number(f"Z_{name}")
+    methods = {"stress": "momentum transfer", "collisions": "the collision rate"}
+    for name, comparison in (("stress", series), ("collisions", series), ("stress", closed)):
+        measured = gas.number(f"Z_{name}")
         yield Row(
-            quantity=f"compressibility factor Z from {ways[name]}",
-            at=at,
-            ours=found._replace(value=found.value + missing),
+            quantity=f"compressibility factor Z from {methods[name]}",
+            at=state,
+            ours=measured._replace(value=measured.value + missing),
             corrections=f"D (N - 1) translational degrees of freedom, and {FIXED_NUMBER}: "
             f"{missing:+.5f}",
-            **known,
+            **comparison,
         )
     volumes = 2.0 ** (dimension - 1) * packing
     yield Row(
         quantity="pair correlation at contact",
-        at=at,
+        at=state,
         tier="exact",
         source=CLISBY,
         read="(Z - 1)/(2^(D - 1) packing), of the virial series",
@@ -110,10 +114,10 @@ def _fluid(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
 def _contacts(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension = int(gas.parameters[0])
     q = theory.moment_of_inertia(dimension)
-    about = {name: data.attrs[name] for name in ("restitution", "roughness", "mu")}
-    r, beta, mu = about.values()
+    settings = {name: data.attrs[name] for name in ("restitution", "roughness", "mu")}
+    r, beta, mu = settings.values()
     limit = (1.0 + 1.0 / q) * mu * (1.0 + r) / (1.0 + beta)
-    known = {
+    closed_forms = {
         "restitution": ("normal restitution of a contact", r, "-g_n'/g_n = r"),
         "roughness": ("tangential restitution of a sticking contact", beta, "-g_t'/g_t = beta_0"),
         "friction": ("tangential over normal impulse of a sliding contact", mu, "J_t/J_n = mu"),
@@ -124,26 +128,26 @@ def _contacts(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
         ),
         "turn": ("change of spin over the impulse's torque", 1.0, "q m a^2 (w' - w) = -a n x J"),
     }
-    at = _at(dimension, r=r, beta_0=beta, mu=mu)
-    for place, where in {"pair": "pairs", "wall": "walls that move"}.items():
-        for name, (quantity, value, read) in known.items():
+    state = _state(dimension, r=r, beta_0=beta, mu=mu)
+    for partner, partners in {"pair": "pairs", "wall": "walls that move"}.items():
+        for name, (quantity, value, read) in closed_forms.items():
             yield Row(
                 quantity=quantity,
-                at=f"{at}, {where}",
+                at=f"{state}, {partners}",
                 tier="exact",
                 source=WALTON,
                 read=read,
-                theirs=_known(value),
-                ours=gas.number(f"{name}_{place}"),
+                theirs=_exact_value(value),
+                ours=gas.number(f"{name}_{partner}"),
                 corrections=ROUNDING,
             )
     yield Row(
         quantity="speed at which a sliding particle begins to roll, over its first speed",
-        at=_at(dimension, q=q),
+        at=_state(dimension, q=q),
         tier="exact",
         source=CORIOLIS,
         read="1/(1 + q): angular momentum about the point of contact is conserved",
-        theirs=_known(1.0 / (1.0 + q)),
+        theirs=_exact_value(1.0 / (1.0 + q)),
         ours=gas.number("rolling"),
         corrections=ROUNDING,
     )
@@ -162,11 +166,11 @@ def _rates(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
             continue  # smooth particles keep their spins
         yield Row(
             quantity=quantity,
-            at=_at(dimension, r=r, beta=beta, theta=theta),
+            at=_state(dimension, r=r, beta=beta, theta=theta),
             tier="exact",
             source=HUTHMANN,
             read="rate equations, n in collisions per particle; exact for Maxwellians",
-            theirs=_known(value),
+            theirs=_exact_value(value),
             ours=gas.number(name),
             corrections="D (N - 1) translational degrees of freedom",
         )
@@ -181,7 +185,7 @@ def _tracer(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     ]
     pairs = [{"between": ["elastic", "tracer"], "restitution": r}]
     finite = theory.mixture_cooling(theory.mixture(species, 1.0, -1.0, 3, pairs=pairs)).T_tr
-    exact, found = published.tracer_ratio(r, mass), gas.number("ratio")
+    exact, measured = published.tracer_ratio(r, mass), gas.number("ratio")
     shift = exact - float(finite[1] / finite[0])
     yield Row(
         quantity="T_0/T of a smooth tracer among elastic spheres",
@@ -189,8 +193,8 @@ def _tracer(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
         tier="exact",
         source=MARTIN,
         read="(1 + r)/(2 + (1 - r) m/M)",
-        theirs=_known(exact),
-        ours=found._replace(value=found.value + shift),
+        theirs=_exact_value(exact),
+        ours=measured._replace(value=measured.value + shift),
         corrections=(
             f"{shift:+.4f} as {100 * share:g} % are tracers and the gas cools, by the theory of "
             "mixtures; no total momentum"
@@ -200,24 +204,24 @@ def _tracer(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
 
 def _haff(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension, r, beta = gas.parameters
-    at = _at(dimension, r=r, beta=beta)
+    state = _state(dimension, r=r, beta=beta)
     yield Row(
         quantity="exponent p of T ~ t^-p of a homogeneous cooling gas",
-        at=at,
+        at=state,
         tier="exact",
         source=HAFF,
         read="2, as nothing but T sets the time",
-        theirs=_known(2.0),
+        theirs=_exact_value(2.0),
         ours=gas.number("exponent"),
         corrections=f"none; {DSMC}",
     )
     yield Row(
         quantity="decay rate -d ln T/dn of a homogeneous cooling gas",
-        at=at,
+        at=state,
         tier="theory",
         source=HUTHMANN,
         read="rate equations of Maxwellian velocities, stationary T_rot/T_tr",
-        theirs=_known(float(theory.decay_rate(r, beta, int(dimension)))),
+        theirs=_exact_value(float(theory.decay_rate(r, beta, int(dimension)))),
         ours=gas.number("decay"),
         corrections=f"none, N - 1 would be 0.05 %; {DSMC}",
         reason="velocities and spins are not Maxwellian",
@@ -232,11 +236,11 @@ def _sonine(gas: Gas, theories: dict[str, Formula], drive: str, note: str) -> It
     for source, formula in theories.items():
         yield Row(
             quantity=f"a2 of a smooth {drive} gas",
-            at=_at(dimension, r=r),
+            at=_state(dimension, r=r),
             tier="theory",
             source=source,
             read=CLOSED_FORM,
-            theirs=_known(formula(dimension, r)),
+            theirs=_exact_value(formula(dimension, r)),
             ours=gas.number("a2"),
             corrections=note,
             reason=SONINE,
@@ -244,7 +248,7 @@ def _sonine(gas: Gas, theories: dict[str, Formula], drive: str, note: str) -> It
 
 
 def _cooling(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
-    theories = {VAN_NOIJE: published.sonine, MONTANERO: published.sonine_closer}
+    theories = {VAN_NOIJE: published.sonine_cooling, MONTANERO: published.sonine_cooling_closer}
     return _sonine(gas, theories, "cooling", f"2/(D N) of the sample's own energy; {DSMC}")
 
 
@@ -256,15 +260,20 @@ def _noise(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
 def _tail(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension, r, driven = int(gas.parameters[0]), gas.parameters[1], bool(gas.parameters[2])
     slope, bend = gas.number("tail"), gas.number("bend").value
-    finite, a2 = published.gained(dimension, r, driven) * bend, round(gas.number("a2").value, 4)
-    law, what = ("exp(-A c^(3/2))", "driven by white noise") if driven else ("exp(-A c)", "cooling")
+    finite, a2 = (
+        published.grazing_correction(dimension, r, driven) * bend,
+        round(gas.number("a2").value, 4),
+    )
+    law, drive = (
+        ("exp(-A c^(3/2))", "driven by white noise") if driven else ("exp(-A c)", "cooling")
+    )
     yield Row(
-        quantity=f"A of the tail {law} of a smooth gas {what}, c = v/sqrt(2 T/m)",
-        at=_at(dimension, r=r, a2=a2),
+        quantity=f"A of the tail {law} of a smooth gas {drive}, c = v/sqrt(2 T/m)",
+        at=_state(dimension, r=r, a2=a2),
         tier="exact",
         source=VAN_NOIJE,
         read="what is lost of fast particles over the cooling, with the measured a2; c to infinity",
-        theirs=_known(published.tail(dimension, r, a2, driven)),
+        theirs=_exact_value(published.tail(dimension, r, a2, driven)),
         ours=Estimate(slope.value, math.hypot(slope.stderr, finite)),
         corrections=f"none; our error has the first term in 1/c, {finite:.2f}, beside chance, "
         f"{slope.stderr:.2f}; from where a Maxwellian is {'1.2' if driven else '1.6'} times as "
@@ -278,11 +287,11 @@ def _rough(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     for name in ("R", "a20", "a11", "a02"):
         yield Row(
             quantity=f"{name} of a rough cooling gas",
-            at=_at(dimension, r=r, beta=beta),
+            at=_state(dimension, r=r, beta=beta),
             tier="theory",
             source=MEGIAS,
             read="Sonine approximation, first order in cumulants; collision integrals derived anew",
-            theirs=_known(float(getattr(state, name))),
+            theirs=_exact_value(float(getattr(state, name))),
             ours=gas.number(name),
             corrections=f"none; {DSMC}",
             reason="higher cumulants, and squares of these",
@@ -290,13 +299,14 @@ def _rough(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
 
 
 def _experiment(gases: list[Gas]) -> list[Row]:
-    """Return an experiment beside all rough spheres that cool, whose r and beta are unknown."""
+    """Return the row of an experiment whose r and beta are unknown, against the range of all rough
+    spheres that cool."""
     spheres = [gas for gas in gases if gas.kind == "rough" and gas.parameters[0] == 3]
     theta = [R / (1.0 - R) for R in (gas.number("R").value for gas in spheres)]
     if not theta:
         return []
     low, high = min(theta), max(theta)
-    known = Row(
+    row = Row(
         quantity="T_rot/T_tr of spheres that cool in microgravity",
         at="r and beta not known to us",
         tier="experiment",
@@ -307,7 +317,7 @@ def _experiment(gases: list[Gas]) -> list[Row]:
         corrections=f"none; ours is the middle of {low:.2f} to {high:.2f} of those above",
         reason="a shaken box sets the ratio; what r, beta and friction were is not in the abstract",
     )
-    return [known]
+    return [row]
 
 
 def _clusters(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
@@ -315,7 +325,7 @@ def _clusters(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     for name, exponent in (("translation", 1.0), ("rotation", 1.6)):
         yield Row(
             quantity=f"exponent of time in the cooling of {name} while clusters grow",
-            at=_at(2, r=r, beta=beta),
+            at=_state(2, r=r, beta=beta),
             tier="simulation",
             source=PATHAK,
             read="abstract: close to this at all r and beta, error not given there",
@@ -338,11 +348,11 @@ def _mixture(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
         change = "loss of T_tr" if name.startswith("loss") else "gain of T_rot"
         yield Row(
             quantity=f"first {change} of a species in a mixture, over T_tr",
-            at=f"{_at(3, r=r, beta=beta, theta=theta)}, species {name[-1]} {both}",
+            at=f"{_state(3, r=r, beta=beta, theta=theta)}, species {name[-1]} {both}",
             tier="exact",
             source=SANTOS,
             read="energy production rates, n in collisions per particle; exact for Maxwellians",
-            theirs=_known(float(value)),
+            theirs=_exact_value(float(value)),
             ours=gas.number(name),
             corrections="D (N - 1) translational degrees of freedom",
         )
@@ -352,30 +362,32 @@ def _diffusion(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension = int(gas.parameters[0])
     smooth = gas.number("smooth").scaled(1.0 / published.diffusion(dimension))
     q = theory.moment_of_inertia(dimension)
-    one = partial(Row, at=NAMES[dimension], corrections=f"1/N of the others' velocities; {DSMC}")
+    row_of_gas = partial(
+        Row, at=NAMES[dimension], corrections=f"1/N of the others' velocities; {DSMC}"
+    )
     of_smooth = partial(
-        one,
+        row_of_gas,
         "self-diffusion of smooth elastic particles, D nu/T over D/2",
         source=CHAPMAN,
         ours=smooth,
     )
-    yield of_smooth(tier="theory", read="first approximation", theirs=_known(1.0))
+    yield of_smooth(tier="theory", read="first approximation", theirs=_exact_value(1.0))
     for row in references(__file__):
         if row["quantity"] == "diffusion" and int(row["dimension"]) == dimension:
             theirs = Estimate(float(row["value"]), float(row["stderr"]))
             yield of_smooth(tier="exact", read=row["read"], theirs=theirs)
-    yield one(
+    yield row_of_gas(
         "self-diffusion of perfectly rough over smooth elastic particles",
         tier="theory",
         source=PIDDUCK,
         read="first approximation: spheres (1 + q)/(1 + 2 q); disks by the same steps",
-        theirs=_known(published.rough_diffusion(dimension, q)),
+        theirs=_exact_value(published.rough_diffusion(dimension, q)),
         ours=gas.number("rough_over_smooth"),
         reason="higher polynomials, and velocities with which contacts have correlated spins",
     )
 
 
-OF_KIND: dict[str, Callable[[Gas, xr.Dataset], Iterator[Row]]] = {
+ROWS_OF_KIND: dict[str, Callable[[Gas, xr.Dataset], Iterator[Row]]] = {
     "fluids": _fluid,
     "contacts": _contacts,
     "rates": _rates,

@@ -1,4 +1,4 @@
-"""The figure of what is known exactly, and of the cumulant a2, beside what was measured."""
+"""Figure of measured quantities against exact values, and of the cumulant a2 against theory."""
 
 from collections import defaultdict
 
@@ -8,14 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.judging import SIGNIFICANT
-from roughgas.plotting import GREY, LOOKS, THEORY
+from roughgas.plotting import GREY, LINE_STYLES, THEORY
 
 from . import published
 from .evidence import NAMES, Gas, rows
 
 SIZE = (7.0, 6.4)  # inches
-FARTHEST = 5.0  # abs(z) within the axis
-SHORT = {
+LARGEST_Z = 5.0  # abs(z) within the axis
+SHORT_NAMES = {
     "compressibility factor Z from momentum transfer": "$Z$, momentum",
     "compressibility factor Z from the collision rate": "$Z$, collisions",
     "pair correlation at contact": "$g$ at contact",
@@ -31,19 +31,19 @@ SHORT = {
     "exponent p of T ~ t^-p of a homogeneous cooling gas": "Haff's exponent",
     "self-diffusion of smooth elastic particles, D nu/T over D/2": "diffusion",
 }
-"""Exact numbers by what the axis calls them; all others are of single contacts."""
+"""Labels of exact quantities on the axis; all others are of single contacts."""
 CONTACTS = "single contacts"
 STATES = {
-    "cooling": (published.sonine, published.sonine_closer),
+    "cooling": (published.sonine_cooling, published.sonine_cooling_closer),
     "noise": (published.sonine_driven,),
 }
 STYLES = {"-": "van Noije & Ernst", "--": "Montanero & Santos; Coppex et al."}
-"""Of lines: whose theory each is, in the order of the formulae above."""
+"""Line styles and the theory of each, in the order of the formulae in STATES."""
 LABELS = {"cooling": "cooling", "noise": "white noise"}
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Return the figure, of what all gases have shown."""
+    """Draw the figure from the dataset of all gases."""
     figure = Figure(figsize=SIZE, layout="constrained")
     above, beneath = figure.subplots(2, 1, height_ratios=(1, 1.15))
     draw_exact(above, data)
@@ -52,36 +52,38 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def draw_exact(axes: Axes, data: xr.Dataset) -> None:
-    """Draw z of each number with a known exact value, a line for each quantity."""
-    found: dict[str, list[float]] = defaultdict(list)
+    """Draw z of each quantity with an exact value, one line per quantity."""
+    z_of_quantity: dict[str, list[float]] = defaultdict(list)
     for row in rows(data):
         if row.tier == "exact":
-            found[SHORT.get(row.quantity, CONTACTS)].append(row.z)
-    for place, z in enumerate(found.values()):
-        # numbers that agree to the last digit lie on each other: spread them
-        heights = place + np.linspace(-0.25, 0.25, len(z) + 2)[1:-1]
-        axes.plot(np.clip(z, -FARTHEST, FARTHEST), heights, "o", color=LOOKS[0].colour, ms=3.5)
+            z_of_quantity[SHORT_NAMES.get(row.quantity, CONTACTS)].append(row.z)
+    for position, z in enumerate(z_of_quantity.values()):
+        # values that agree to the last digit would overlap: spread them
+        heights = position + np.linspace(-0.25, 0.25, len(z) + 2)[1:-1]
+        axes.plot(
+            np.clip(z, -LARGEST_Z, LARGEST_Z), heights, "o", color=LINE_STYLES[0].colour, ms=3.5
+        )
     axes.axvspan(-SIGNIFICANT, SIGNIFICANT, color=GREY, alpha=0.15, lw=0)
     axes.axvline(0.0, color=THEORY, lw=0.8, zorder=0)
-    axes.set_yticks(range(len(found)), list(found))
-    axes.set(xlim=(-FARTHEST - 0.2, FARTHEST + 0.2), ylim=(len(found) - 0.4, -0.6))
+    axes.set_yticks(range(len(z_of_quantity)), list(z_of_quantity))
+    axes.set(xlim=(-LARGEST_Z - 0.2, LARGEST_Z + 0.2), ylim=(len(z_of_quantity) - 0.4, -0.6))
     axes.set_xlabel("$z$ of ours minus exact")
     axes.set_title("(a) numbers that are known exactly", loc="left", fontsize=8.5)
     axes.tick_params(axis="y", which="both", left=False, right=False)
 
 
 def draw_cumulants(axes: Axes, data: xr.Dataset) -> None:
-    """Draw a2 of smooth gases over r, beside theory."""
+    """Draw a2 of smooth gases over r, and theory."""
     r = np.linspace(0.0, 1.0, 201)
     gases = [Gas(data, str(task)) for task in data.task_name.values]
     series = [(kind, dimension) for kind in STATES for dimension in NAMES]
-    for (kind, dimension), look in zip(series, LOOKS, strict=False):
-        these = [one for one in gases if one.kind == kind and one.parameters[0] == dimension]
-        a2 = [one.number("a2") for one in these]
+    for (kind, dimension), look in zip(series, LINE_STYLES, strict=False):
+        shown = [gas for gas in gases if gas.kind == kind and gas.parameters[0] == dimension]
+        a2 = [gas.number("a2") for gas in shown]
         axes.errorbar(
-            [one.parameters[1] for one in these],
-            [one.value for one in a2],
-            [one.stderr for one in a2],
+            [gas.parameters[1] for gas in shown],
+            [estimate.value for estimate in a2],
+            [estimate.stderr for estimate in a2],
             fmt=look.marker,
             color=look.colour,
             ms=4,

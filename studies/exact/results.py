@@ -1,4 +1,4 @@
-"""What all gases have shown: one long list of numbers."""
+"""Measured quantities of all gases in one list."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -7,48 +7,63 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.tasks import Estimate, along, cell, dataset, markdown, mean, stacked, variables
+from roughgas.tasks import (
+    Estimate,
+    dataset,
+    markdown,
+    mean_estimate,
+    read_variables,
+    slices_along,
+    stack_rows,
+    table_cell,
+)
 
-ROUNDING = 1e-11
-"""Relative error of one contact: numbers have 2e-16, of which glancing contacts lose digits."""
+CONTACT_ROUNDING = 1e-11
+"""Relative error of one contact: doubles have 2e-16, and glancing contacts lose digits."""
 VARIABLES = Path(__file__).with_name("variables.yaml")
 
 
-def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
-    """Return every number that was measured, with its error."""
+def combine(task_results: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+    """Return every measured quantity, with its error."""
     rows = [
         {"task": task, "quantity": str(name), "value": average(values), "runs": values.size}
-        for task, part in parts.items()
-        for name, values in part.data_vars.items()
+        for task, task_result in task_results.items()
+        for name, values in task_result.data_vars.items()
         if name != "seconds"
     ]
-    spent = {"task_name": list(parts), "seconds": [float(part.seconds) for part in parts.values()]}
+    spent = {
+        "task_name": list(task_results),
+        "seconds": [float(task_result.seconds) for task_result in task_results.values()],
+    }
     contacts, tracers = settings["contacts"], settings["tracers"]
-    about = {
+    attributes = {
         "seed": settings["seed"],
         "particles": settings["fluids"]["particles"],
         "tracers": tracers["tracers"] / tracers["particles"],
         "mixed": settings["mixtures"]["packing"],
         **{name: contacts[name] for name in ("restitution", "roughness", "mu")},
     }
-    return dataset(variables(VARIABLES), stacked(rows) | spent, **about)
+    return dataset(read_variables(VARIABLES), stack_rows(rows) | spent, **attributes)
 
 
 def average(values: xr.DataArray) -> Estimate:
-    """Return the mean over independent runs, or the contact that is farthest from the median.
+    """Return the mean over independent runs, or the value of the contact farthest from the median.
 
-    Contacts differ by roundings alone. Their errors need not be independent, nor Gaussian: ROUNDING
-    stands for them.
+    Contacts differ by rounding alone. Their errors need not be independent, nor Gaussian;
+    CONTACT_ROUNDING is taken as the error.
     """
     if values.dims == ("run",):
-        return mean(values.values)
+        return mean_estimate(values.values)
     middle = float(values.median())
     farthest = float(values.values[np.abs(values.values - middle).argmax()])
-    return Estimate(farthest, ROUNDING * abs(middle))
+    return Estimate(farthest, CONTACT_ROUNDING * abs(middle))
 
 
 def table(data: xr.Dataset) -> str:
-    """Return all numbers as a table."""
-    every = along(data, "number")
-    rows = [[one.task.item(), one.quantity.item(), cell(one, "value")] for one in every]
+    """Return all quantities, Markdown."""
+    numbers = slices_along(data, "number")
+    rows = [
+        [number.task.item(), number.quantity.item(), table_cell(number, "value")]
+        for number in numbers
+    ]
     return f"## Gases of which something is known\n\n{markdown(['gas', 'quantity', 'found'], rows)}"

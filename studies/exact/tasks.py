@@ -1,4 +1,4 @@
-"""Gases of which something is known, one a task: what is measured of each, run by run."""
+"""Tasks of gases with exact results, one gas per task: quantities measured in each run."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.tasks import stream, timed
+from roughgas.tasks import seed_sequence, timed
 
 from . import contacts, events, homogeneous
 
-KINDS: dict[str, Callable[..., dict[str, float]]] = {
+RUN_OF_KIND: dict[str, Callable[..., dict[str, float]]] = {
     "noise": events.noise,
     "fluids": events.fluid,
     "tracers": events.tracer,
@@ -23,22 +23,27 @@ KINDS: dict[str, Callable[..., dict[str, float]]] = {
     "mixtures": events.mixtures,
     "clusters": events.clusters,
 }
-"""What finds numbers in one run of a gas, from settings, the gas and a seed."""
+"""Functions that measure quantities in one run of a gas, from settings, its parameters and a
+seed."""
 CONTACTS = "contacts"
 
 
 def tasks(settings: Mapping[str, Any]) -> list[str]:
-    """Return the names of all gases, the longest first, and at last of the single contacts."""
+    """Return the names of all gases, the longest first, and last the names of the single
+    contacts."""
     return list(gases_of(settings))
 
 
 def gases_of(settings: Mapping[str, Any]) -> dict[str, tuple[str, list[float]]]:
-    """Return kind and parameters of each gas by name; its random numbers are of its place."""
+    """Return kind and parameters of each gas by name; its random numbers depend on its position."""
     gases = []
-    for kind in KINDS:
-        about = settings[kind]
-        found = about["gases"] if "gases" in about else [[one] for one in about["dimensions"]]
-        gases += [(kind, gas) for gas in found]
+    for kind in RUN_OF_KIND:
+        kind_settings = settings[kind]
+        if "gases" in kind_settings:
+            parameters = kind_settings["gases"]
+        else:
+            parameters = [[dimension] for dimension in kind_settings["dimensions"]]
+        gases += [(kind, gas) for gas in parameters]
     gases += [(CONTACTS, [dimension]) for dimension in settings[CONTACTS]["dimensions"]]
     return {name_of(kind, *gas): (kind, gas) for kind, gas in gases}
 
@@ -49,17 +54,19 @@ def name_of(kind: str, *gas: float) -> str:
 
 
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
-    """Return what is found, by name: in each `run` of a gas, or in each `contact`."""
+    """Return the measured quantities by name: for each `run` of a gas, or for each `contact`."""
     gases = gases_of(settings)
     kind, gas = gases[task]
-    seeds = stream(settings, list(gases).index(task)).spawn(settings["runs"])
+    seeds = seed_sequence(settings, list(gases).index(task)).spawn(settings["runs"])
     if kind == CONTACTS:
-        found, seconds = timed(contacts.find, settings[CONTACTS], gas[0], seeds[0])
-        parts = {name: ((f"contact_{name}",), values) for name, values in found.items()}
-        return xr.Dataset({**parts, "seconds": seconds})
+        values_of_contacts, seconds = timed(contacts.measure, settings[CONTACTS], gas[0], seeds[0])
+        columns = {
+            name: ((f"contact_{name}",), values) for name, values in values_of_contacts.items()
+        }
+        return xr.Dataset({**columns, "seconds": seconds})
     rows, spent = [], 0.0
     for k, seed in enumerate(seeds):
-        row, seconds = timed(KINDS[kind], settings[kind], gas, seed)
+        row, seconds = timed(RUN_OF_KIND[kind], settings[kind], gas, seed)
         rows.append(row)
         spent += seconds
         progress(k + 1, len(seeds))

@@ -5,34 +5,34 @@ import xarray as xr
 
 from roughgas.judging import (
     AGREE,
+    DISAGREE,
     FAILS,
-    LIMIT,
     Finding,
     NotTestedError,
     agreement,
     agreement_in_proportion,
-    of_ratio,
+    ratio_sample,
     sample,
     sum_error,
     text,
 )
 
 SPIN_ALONE = 1 - 1e-6
-"""R of theory from which spin outlives translation: it is 1 but for rounding."""
+"""R of theory beyond which spin outlives translation: 1, up to rounding."""
 
 
 def follows_rates(gas: xr.Dataset) -> Finding:
     """R - the rate equations with friction is compatible with zero, also relative to theory."""
     held = gas.sel(mu=gas.mu > 0.0)  # at mu = 0 spin is decoupled: R keeps its initial value
-    found = agreement_in_proportion(held, "the rate equations")
+    finding = agreement_in_proportion(held, "the rate equations")
     measured, expected = _rough_from(held.R), _rough_from(held.theory)
-    at = "; ".join(
+    thresholds = "; ".join(
         f"beta = {beta:g}: {measured[beta]} (rate equations {expected[beta]})" for beta in measured
     )
     largest = held.mu.values[-1]
-    return found.with_note(
+    return finding.with_note(
         f"Smallest mu from which R stays within {AGREE:g} of R at the largest, mu = {largest:g}: "
-        f"{at}."
+        f"{thresholds}."
     )
 
 
@@ -54,15 +54,16 @@ def keeps_spin_when_weak(cooling: xr.Dataset) -> Finding:
     alone = held.theory > SPIN_ALONE
     if not alone.any():
         raise NotTestedError("no mu > 0 of the sweep has R = 1 in theory")
-    found = agreement(of_ratio(held, (held.R - 1).where(alone)), "1")
-    after = held[["R", "R_stderr", "R_dof", "theory"]].shift(mu=-1)
-    errors = sum_error([held.R_stderr, after.R_stderr], [held.R_dof, after.R_dof])
-    fall = (held.R - after.R).where(alone & (after.theory <= SPIN_ALONE))
+    finding = agreement(ratio_sample(held, (held.R - 1).where(alone)), "1")
+    next_mu = held[["R", "R_stderr", "R_dof", "theory"]].shift(mu=-1)
+    errors = sum_error([held.R_stderr, next_mu.R_stderr], [held.R_dof, next_mu.R_dof])
+    fall = (held.R - next_mu.R).where(alone & (next_mu.theory <= SPIN_ALONE))
     jump = sample(fall, *errors)
-    expected = sample((held.theory - after.theory).where(np.isfinite(fall)), *errors)
-    largest, place = jump.largest()
-    by = expected.value[int(np.argmax(np.abs(jump.value)))]
-    reason = f"Where theory has R = 1, {found.reason} From there to the next mu of the sweep, R "
-    reason += f"falls by up to {text(largest)} at {place}, in theory by {by:.4f}."
-    verdict = found.verdict if largest.real and largest.value > LIMIT else FAILS
-    return Finding(verdict, reason, (*found.numbers[:2], ("largest fall of R", largest)))
+    expected = sample((held.theory - next_mu.theory).where(np.isfinite(fall)), *errors)
+    largest, location = jump.largest()
+    theory_fall = expected.value[int(np.argmax(np.abs(jump.value)))]
+    reason = f"Where theory has R = 1, {finding.reason} From there to the next mu of the sweep, R "
+    reason += f"falls by up to {text(largest)} at {location}, in theory by {theory_fall:.4f}."
+    verdict = finding.verdict if largest.is_significant and largest.value > DISAGREE else FAILS
+    numbers = (*finding.numbers[:2], ("largest fall of R", largest))
+    return Finding(verdict, reason, numbers, finding.detectable)

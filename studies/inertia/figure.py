@@ -3,23 +3,32 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.plotting import INERTIA, TWO_WIDE, Style, content_for_each_beta, ratio_figure
+from roughgas.plotting import (
+    INERTIA,
+    TWO_WIDE,
+    Style,
+    content_for_each_beta,
+    judged_title,
+    ratio_figure,
+)
 
-BED: Style = {
-    "message": "A bed departs from theory at both ends",
-    "theories": "lines: Lun's formula",
-}
-COOLING: Style = {
-    "message": "A cooling gas follows theory at any q",
-    "theories": "lines: theory of free cooling",
-}
+BED, COOLING = "R of a bed over its disks' inertia", "R of a cooling gas over its disks' inertia"
+"""Titles where the statements fail."""
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
-    how: Style = {"legend": {"loc": "upper right", "ncols": 2}, "axis": INERTIA}
+    style: Style = {"legend": {"loc": "upper right", "ncols": 2}, "axis": INERTIA}
+    driven: Style = {
+        "message": judged_title(__file__, "vibrated_inertia_follows_lun", [bed], BED),
+        "theories": "lines: Lun's formula",
+    }
+    free: Style = {
+        "message": judged_title(__file__, "cooling_inertia_follows_k", [cooling], COOLING),
+        "theories": "lines: theory of free cooling",
+    }
     return ratio_figure(
-        content_for_each_beta("Vibrated bed", bed, **BED, **how),
-        content_for_each_beta("Cooling gas", cooling, **COOLING, **how),
+        content_for_each_beta("Vibrated bed", bed, **driven, **style),
+        content_for_each_beta("Cooling gas", cooling, **free, **style),
         width=TWO_WIDE,
     )

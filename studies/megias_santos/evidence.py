@@ -1,13 +1,14 @@
-"""The published stationary states beside ours, row by row, and theory of both."""
+"""Published stationary states against ours, and theory, as rows of evidence."""
 
 from collections.abc import Iterator
 
 import xarray as xr
 
 from roughgas import theory
-from roughgas.judging import Estimate, Row, place_of
+from roughgas.judging import Estimate, Row, point_text
 
-from .published import CUMULANTS, published
+from .long import HOMOGENEOUS_R, SIZE_EFFECT, committed
+from .published import CUMULANTS, published, published_R
 
 SIMULATED = "Megias & Santos 2022, Front. Phys. 10, 971671, doi:10.3389/fphy.2022.971671"
 PREDICTED = "Megias & Santos 2023, Phys. Rev. E 108, 014902"
@@ -21,31 +22,47 @@ REASONS = {
 
 
 def rows(gas: xr.Dataset) -> Iterator[Row]:
-    """Yield R and each cumulant of every state beside those of either method, and of theory."""
+    """Yield R and each cumulant of every state, against both published methods and theory."""
     size = float((gas.R_ratio_of_means - gas.R_corrected).max())
     counted = f"D (N - 1) translational degrees of freedom: R lower by up to {size:.4f}"
     states = gas.R.transpose("r", "beta", "spin_share").to_series().dropna().index
-    places = [dict(zip(states.names, state, strict=True)) for state in states]
+    points = [dict(zip(states.names, state, strict=True)) for state in states]
     for name in ("R", *CUMULANTS):
         corrections = counted if name == "R" else ""
         for method, reason in REASONS.items():
             values, errors = published(method, gas.R, name)
-            for place in places:
-                theirs = Estimate(float(values.sel(place)), float(errors.sel(place)))
+            for point in points:
+                theirs = Estimate(float(values.sel(point)), float(errors.sel(point)))
                 quantity = f"{name} of disks driven by white noise, {method}"
-                about = place_of(place), "simulation", SIMULATED, RAW.format(FOLDERS[name])
-                yield Row(quantity, *about, theirs, _ours(gas, name, place), corrections, reason)
-        for place in places:
-            about = place["r"], place["beta"], gas.attrs["dimension"], gas.attrs["inertia"]
-            state = theory.sonine_state(*about, place["spin_share"])
+                source = point_text(point), "simulation", SIMULATED, RAW.format(FOLDERS[name])
+                yield Row(quantity, *source, theirs, _ours(gas, name, point), corrections, reason)
+        for point in points:
+            parameters = point["r"], point["beta"], gas.attrs["dimension"], gas.attrs["inertia"]
+            state = theory.sonine_state(*parameters, point["spin_share"])
             theirs = Estimate(float(getattr(state, name)), 0.0)
             quantity = f"{name} of disks driven by white noise, Sonine approximation"
-            at = place_of(place), "theory", PREDICTED, DERIVED
-            yield Row(quantity, *at, theirs, _ours(gas, name, place), corrections)
+            source = point_text(point), "theory", PREDICTED, DERIVED
+            yield Row(quantity, *source, theirs, _ours(gas, name, point), corrections)
+    yield from _homogeneous_rows()
 
 
-def _ours(gas: xr.Dataset, name: str, place: dict[str, float]) -> Estimate:
-    """Return what was measured; the error of R_corrected is that of R, which pools its seeds."""
-    one = gas.sel(place)
-    value = one.R_corrected if name == "R" else one[name]
-    return Estimate(float(value), float(one[f"{name}_stderr"]), float(one[f"{name}_dof"]))
+def _homogeneous_rows() -> Iterator[Row]:
+    """Yield R of homogeneous gases, from long.csv, against published DSMC and theory."""
+    size_effects = committed(SIZE_EFFECT)
+    for state, ours in committed(HOMOGENEOUS_R).items():
+        at = point_text(state._asdict())
+        corrections = f"extrapolated in N: R of N disks is larger by {size_effects[state]}/N"
+        read, theirs = RAW.format(FOLDERS["R"]), published_R(*state)
+        name = f"{HOMOGENEOUS_R}, DSMC"
+        yield Row(name, at, "simulation", SIMULATED, read, theirs, ours, corrections)
+        sonine = theory.sonine_state(state.r, state.beta, spin_share=state.spin_share)
+        name = f"{HOMOGENEOUS_R}, Sonine approximation"
+        theirs = Estimate(float(sonine.R), 0.0)
+        yield Row(name, at, "theory", PREDICTED, DERIVED, theirs, ours, corrections)
+
+
+def _ours(gas: xr.Dataset, name: str, point: dict[str, float]) -> Estimate:
+    """Return our value; the error of R_corrected is the error of R, which pools its seeds."""
+    state = gas.sel(point)
+    value = state.R_corrected if name == "R" else state[name]
+    return Estimate(float(value), float(state[f"{name}_stderr"]), float(state[f"{name}_dof"]))

@@ -1,4 +1,4 @@
-"""Disks of many sizes: what spread radii change in the bed of Fig. 1a and the gas of Fig. 2b."""
+"""Disks of many sizes: the effect of spread radii in the bed of Fig. 1a and the gas of Fig. 2b."""
 
 from collections.abc import Sequence
 
@@ -8,67 +8,71 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas import plotting
-from roughgas.plotting import FAINT, LOOKS, THEORY, Look, Style, key
+from roughgas.plotting import FAINT, LINE_STYLES, THEORY, LineStyle, Style, key
 
 SIZE = (7.0, 5.4)  # inches
-ALIKE = 0.0
-MESSAGES = "A bed hardly feels a spread of sizes", "A cooling gas does, where R is steep"
+EQUAL_RADII = 0.0
+DRAWN = "R of disks whose radii are spread"
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of polydisperse beds and cooling gases.
 
     Colours stand for r, symbols and lines for the deviation of the radii. Beneath: R minus R of
-    disks that are all alike, lines: the same of theory; each gas has a scale of its own.
+    equal disks, with lines for the same difference in theory; each gas has its own scale.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
     above, beneath = figure.subplots(2, 2, sharex="col", height_ratios=(1.6, 1))
     values = sorted({*bed.r.values, *cooling.r.values}, reverse=True)
-    colours = dict(zip(values, LOOKS, strict=False))
+    colours = dict(zip(values, LINE_STYLES, strict=False))
     drawn = []
-    for data, title, message, main, shift in zip(
-        (bed, cooling), ("Vibrated bed", "Cooling gas"), MESSAGES, above, beneath, strict=True
+    message = plotting.judged_title(__file__, "sizes_change_nothing", [bed, cooling], DRAWN)
+    for data, title, main, shift in zip(
+        (bed, cooling), ("Vibrated bed", "Cooling gas"), above, beneath, strict=True
     ):
         main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=plotting.DOTS, zorder=0)
-        drawn += [one for r in data.r.values for one in _draw_r(main, shift, data, r, colours[r])]
+        drawn += [
+            curve for r in data.r.values for curve in _draw_r(main, shift, data, r, colours[r])
+        ]
         main.set_ylim(-0.03, 1.03)
         main.tick_params(labelbottom=False)
         plotting.BETA.prepare(shift)
         plotting.add_title(main, [data], title, message)
     above[0].set_ylabel(plotting.ENERGY_RATIO)
     beneath[0].set_ylabel("$R$ minus $R$ of\nequal disks")
-    above[0].legend(handles=_keys(colours, drawn), loc="upper left", title="lines: theory")
+    above[0].legend(handles=_legend_keys(colours, drawn), loc="upper left", title="lines: theory")
     figure.align_ylabels()
     return figure
 
 
 def _draw_r(
-    main: Axes, shift: Axes, data: xr.Dataset, r: float, colour: Look
+    main: Axes, shift: Axes, data: xr.Dataset, r: float, colour: LineStyle
 ) -> list[plotting.Series]:
-    """Draw R at one r, and what the deviation of the radii changes; return the series."""
-    grid, equal = plotting.BETA.grid, data.sel(r=r, deviation=ALIKE)
-    every, of_equal = [], np.full(grid.shape, np.nan)
-    for deviation, form in zip(data.deviation.values, LOOKS, strict=False):
+    """Draw R at one r, and its change by the deviation of the radii; return the series."""
+    grid, equal = plotting.BETA.grid, data.sel(r=r, deviation=EQUAL_RADII)
+    curves, theory_of_equal = [], np.full(grid.shape, np.nan)
+    for deviation, form in zip(data.deviation.values, LINE_STYLES, strict=False):
         look = form._replace(colour=colour.colour)
-        one = plotting.series(data, f"{100 * deviation:g} %", look, r=r, deviation=deviation)
-        every.append(one)
+        curve = plotting.series(data, f"{100 * deviation:g} %", look, r=r, deviation=deviation)
+        curves.append(curve)
         line: Style = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9, "zorder": 1}
-        theory = np.broadcast_to(one.predict(beta=grid), grid.shape)
-        of_equal = theory if deviation == ALIKE else of_equal
-        plotting.draw_points(main, one, one.at, one.data.R.values)
+        theory = np.broadcast_to(curve.predict(beta=grid), grid.shape)
+        theory_of_equal = theory if deviation == EQUAL_RADII else theory_of_equal
+        plotting.draw_points(main, curve, curve.x, curve.data.R.values)
         main.plot(grid, theory, **line)
-        if deviation != ALIKE:
-            alike = equal.sel(beta=one.at)
-            error = np.hypot(one.data.R_stderr, alike.R_stderr)
-            apart = one._replace(data=one.data.assign(R_stderr=error))
-            plotting.draw_points(shift, apart, one.at, (one.data.R - alike.R).values)
-            shift.plot(grid, theory - of_equal, **line)
-    return every
+        if deviation != EQUAL_RADII:
+            reference = equal.sel(beta=curve.x)
+            error = np.hypot(curve.data.R_stderr, reference.R_stderr)
+            shifted = curve._replace(data=curve.data.assign(R_stderr=error))
+            plotting.draw_points(shift, shifted, curve.x, (curve.data.R - reference.R).values)
+            shift.plot(grid, theory - theory_of_equal, **line)
+    return curves
 
 
-def _keys(colours: dict[float, Look], drawn: Sequence[plotting.Series]) -> list:
-    """Return what colours, symbols and lines are, and open symbols if there are any."""
+def _legend_keys(colours: dict[float, LineStyle], drawn: Sequence[plotting.Series]) -> list:
+    """Return the legend's keys of colours, symbols and lines, and of open symbols if there are
+    any."""
     keys = [key(look.colour, f"$r = {r:g}$", "s") for r, look in colours.items()]
-    for label, look in {one.label: one.look for one in drawn}.items():
+    for label, look in {series.label: series.line_style for series in drawn}.items():
         keys.append(key(THEORY, f"standard deviation of radii {label}", look.marker, look.line))
     return keys + plotting.keys_of_steadiness(drawn)

@@ -1,72 +1,128 @@
 """Judges of the statements on gases that cool by the same drive."""
 
 import math
+from statistics import NormalDist
 
 import numpy as np
 import xarray as xr
 
-from roughgas.judging import SIGNIFICANT, Estimate, Finding, NotTestedError, grade
+from roughgas.judging import (
+    SIGNIFICANT,
+    Estimate,
+    Finding,
+    NotTestedError,
+    combined_finding,
+    grade,
+    point_text,
+)
 
-from .curves import Pair, expected, pair, simulated
+from .curves import Crossing, Pair, hump, pair, pairs
 
-NOISY = 0.3
-"""Relative error of a crossing from which on nothing is judged."""
-SURE = 5.0
-"""Standard errors of the energies by which a crossing, or a hump, counts; T_st's is left out."""
+LARGEST_ERROR = 0.3
+"""Relative error of a crossing beyond which nothing is judged."""
+SIGNIFICANT_DEPTH = 5.0
+"""Standard errors by which a crossing, or a hump, counts."""
 CLOSE = 0.1
 """Relative difference up to which one that differs significantly qualifies."""
-LAST = 2
-"""The stage in which a gas remembers."""
+CLOSE_CURVE = 0.03
+"""Difference of a quarter of a curve from the published one, in T_st, up to which one that differs
+significantly qualifies."""
+MEMORY_STAGE = 2
+"""Index of the stage in which a gas remembers its drive."""
 
 
 def hotter_cools_first(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
-    """The temperatures cross, and when they are published to."""
+    """The temperatures cross, and at the published time."""
     return _crosses(pair(hot, cold))
 
 
 def overshoots(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
-    """The distances from the stationary temperature cross, and when they are published to."""
-    both = pair(hot, cold)
-    curve = both.simulated["cold"]
+    """The distances from the stationary temperature cross, and at the published time."""
+    two = pair(hot, cold)
+    curve = two.simulated["cold"]
     later = curve.time > 0.0
     depth = float(np.max((1.0 - curve.T[later]) / curve.stderr[later]))
-    found = _crosses(both)
-    if depth < SURE:
-        return found._replace(verdict=grade(False, False))
-    return found
+    finding = _crosses(two)
+    if depth < SIGNIFICANT_DEPTH:
+        return finding._replace(verdict=grade(False, False))
+    return finding
 
 
-def _crosses(both: Pair) -> Finding:
-    ours, theirs, theory = map(both.crossing, (both.simulated, both.published, both.expected))
-    if ours.stderr > NOISY * theirs.time:  # where they do not cross there is no error
+def _crosses(two: Pair) -> Finding:
+    ours = two.simulated_crossing()
+    theirs, theory = map(two.crossing, (two.published, two.expected()))
+    crosses = ours.deepest >= SIGNIFICANT_DEPTH
+    if not crosses and theirs.depth < SIGNIFICANT_DEPTH * ours.depth_stderr:
+        raise NotTestedError(
+            f"The published difference, {theirs.depth:.4f} T_st at most, is below "
+            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {ours.depth_stderr:.4f}."
+        )
+    if crosses and ours.stderr > LARGEST_ERROR * theirs.time:
         raise NotTestedError("The curves are too noisy to tell where they cross.")
-    z = (ours.time - theirs.time) / math.hypot(ours.stderr, theirs.stderr)
-    there = ours.deepest >= SURE
-    close = abs(ours.time - theirs.time) < CLOSE * theirs.time
+    gap = time_of(ours).minus(time_of(theirs))
+    close = abs(gap.value) < CLOSE * theirs.time
     reason = (
-        f"The curves cross at {Estimate(ours.time, ours.stderr)}, published ones at "
-        f"{Estimate(theirs.time, theirs.stderr)} (z = {z:.1f}), those of the rate equations at "
-        f"{theory.time:.3f}; then the difference gets {ours.deepest:.0f} standard errors below 0."
+        f"The curves cross at {time_of(ours)}, published ones at {time_of(theirs)} "
+        f"(z = {gap.sigma:.1f}), those of the rate equations at {theory.time:.3f}; then the "
+        f"difference gets {ours.deepest:.1f} standard errors below 0."
     )
-    values = (
-        ("crossing", Estimate(ours.time, ours.stderr)),
-        ("published crossing", Estimate(theirs.time, theirs.stderr)),
+    values = (("crossing", time_of(ours)), ("published crossing", time_of(theirs)))
+    return Finding(
+        grade(crosses and abs(gap.sigma) < SIGNIFICANT, crosses and close), reason, values
     )
-    return Finding(grade(there and abs(z) < SIGNIFICANT, there and close), reason, values)
+
+
+def time_of(crossing: Crossing) -> Estimate:
+    """Return the time of a crossing with its error."""
+    return Estimate(crossing.time, crossing.stderr, crossing.dof)
+
+
+def are_curves_published(*gases: xr.Dataset) -> Finding:
+    """The means over the quarters of each curve are the published ones."""
+    curves = [(two, sample) for two in pairs(gases) for sample in two.published]
+    limit = 2.0 * NormalDist().cdf(-SIGNIFICANT) / len(curves)
+    return combined_finding(
+        (_curve_name(two, sample), _curve_finding(two, sample, limit)) for two, sample in curves
+    )
+
+
+def _curve_name(two, sample):
+    """Return the name of a curve for sentences."""
+    return f"{two.protocol}, {sample} gas, {point_text(two.material)}"
+
+
+def _curve_finding(two, sample, limit):
+    """Return the finding on a curve, which differs if it is less probable than `limit`."""
+    published, quarters = two.quarters(sample)
+    gaps = quarters._replace(value=quarters.value - published)
+    probability = gaps.probability()
+    if math.isnan(probability):
+        raise NotTestedError("The covariance of the quarters of a curve needs more seeds.")
+    largest = int(np.argmax(np.abs(gaps.value)))
+    is_close = abs(gaps.value[largest]) < CLOSE_CURVE
+    reason = (
+        f"the largest difference of a quarter is {gaps.estimate(largest)} T_st; the probability "
+        f"of all four is {probability:.2g}."
+    )
+    verdict = grade(probability >= limit, is_close)
+    return Finding(verdict, reason, (("largest difference of a quarter", gaps.estimate(largest)),))
 
 
 def spins_are_remembered(gas: xr.Dataset) -> Finding:
     """The hump has the depth of the rate equations."""
-    curve = simulated(gas, LAST)
-    theory = expected(gas, curve, LAST)
-    lowest = int(np.nanargmin(theory.T))
-    depth = Estimate(float(1.0 - curve.T[lowest]), float(curve.stderr[lowest]))
-    wanted = float(1.0 - theory.T[lowest])
-    away = abs(depth.value - wanted)
-    there = depth.value > SURE * depth.stderr
+    time, T = hump(gas, MEMORY_STAGE)
+    lowest, expected, gap = (T.estimate(index) for index in range(3))
+    depth = Estimate(1.0 - lowest.value, lowest.stderr, lowest.dof)
+    expected_depth = 1.0 - expected.value
+    has_hump = depth.value > SIGNIFICANT_DEPTH * depth.stderr
+    if not has_hump and expected_depth < SIGNIFICANT_DEPTH * depth.stderr:
+        raise NotTestedError(
+            f"The depth by the rate equations, {expected_depth:.4f} T_st, is below "
+            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {depth.stderr:.4f}."
+        )
     reason = (
-        f"At {curve.time[lowest]:.2f} the gas is colder than in the end by the share {depth}, by "
-        f"the rate equations {wanted:.4f}; z = {away / depth.stderr:.1f}."
+        f"At {time:.2f} the gas is colder than in the end by the share {depth}, by "
+        f"the rate equations {expected_depth:.4f}; z = {abs(gap.sigma):.1f}."
     )
-    fits, close = away < SIGNIFICANT * depth.stderr, away < CLOSE * wanted
-    return Finding(grade(there and fits, there and close), reason, (("depth", depth),))
+    fits, close = abs(gap.sigma) < SIGNIFICANT, abs(gap.value) < CLOSE * expected_depth
+    return Finding(grade(has_hump and fits, has_hump and close), reason, (("depth", depth),))

@@ -1,4 +1,4 @@
-"""Judges of the statements on patterns: in which of our layers they are as published."""
+"""Judges of the statements on patterns: agreement of our layers with the published ones."""
 
 from collections.abc import Iterable
 
@@ -10,7 +10,7 @@ from .published import (
     FITS,
     FITS_WELL,
     FOLDS,
-    beside,
+    layers_of_panels,
     order,
     period,
     room,
@@ -20,11 +20,11 @@ from .published import (
 )
 
 MODES, ORDER = 1.0, 0.1
-"""Wavelengths in a side, and order, by which ours may differ."""
+"""Tolerances: wavelengths in a side, and order."""
 HALF = 0.5
 
 Compared = tuple[str, bool, str, Estimate]
-"""A case or panel, whether it is as published, what is found, and our number."""
+"""Case or panel, whether it agrees with the published value, text of our finding, and our value."""
 
 
 def the_wavelength_is_published(layers: xr.Dataset) -> Finding:
@@ -45,9 +45,11 @@ def it_repeats_when_published(layers: xr.Dataset) -> Finding:
 def _wavelengths(layers):
     for panel, layer in _settled(layers, FITS):
         ours = wavelength(layer)
-        close = abs(side(layer) / ours.value - room(panel, layer)) <= MODES
-        said = f"{ours.value:.3g} D ({panel.wavelength:g} published)"
-        yield panel.case, close, said, ours
+        published = room(panel, layer)
+        close = abs(side(layer) / ours.value - published) <= MODES
+        blind = "; one wave across the box would agree, too" if published - 1.0 <= MODES else ""
+        text = f"{ours.value:.3g} D ({panel.wavelength:g} published{blind})"
+        yield panel.case, close, text, ours
 
 
 def _orders(layers):
@@ -60,23 +62,24 @@ def _orders(layers):
 
 def _periods(layers):
     for panel, layer in _settled(layers, 0.0):
-        found = period(layer)
-        said = f"{found} cycles ({panel.repeats} published)"
-        yield panel.case, found == panel.repeats, said, Estimate(float(found), 0.0)
+        cycles = period(layer)
+        text = f"{cycles} cycles ({panel.repeats} published)"
+        yield panel.case, cycles == panel.repeats, text, Estimate(float(cycles), 0.0)
 
 
 def _settled(layers, wavelengths):
-    """Yield settled layers with their panels, of boxes that hold so many wavelengths."""
-    for panel, layer in beside(layers):
+    """Yield panels and settled layers whose box holds at least `wavelengths` published
+    wavelengths."""
+    for panel, layer in layers_of_panels(layers):
         if settled(layer) and room(panel, layer) >= wavelengths:
             yield panel, layer
 
 
-def _together(compared: Iterable[Compared], what: str) -> Finding:
-    found = {name: rest for name, *rest in compared}  # c and d are one case
-    if not found:
-        raise NotTestedError(f"No case {what}")
-    close = [right for right, _, _ in found.values()]
+def _together(compared: Iterable[Compared], condition: str) -> Finding:
+    by_name = {name: rest for name, *rest in compared}  # c and d are one case
+    if not by_name:
+        raise NotTestedError(f"No case {condition}")
+    close = [agrees for agrees, _, _ in by_name.values()]
     verdict = grade(all(close), sum(close) >= HALF * len(close))
-    reason = "; ".join(f"{name}: {said}" for name, (_, said, _) in found.items()) + "."
-    return Finding(verdict, reason, tuple((name, ours) for name, (*_, ours) in found.items()))
+    reason = "; ".join(f"{name}: {text}" for name, (_, text, _) in by_name.items()) + "."
+    return Finding(verdict, reason, tuple((name, ours) for name, (*_, ours) in by_name.items()))

@@ -1,7 +1,7 @@
-"""The published patterns, and what ours are held against them by: C. Bizon, M. D. Shattuck, J. B.
+"""The published patterns, and the quantities that we compare: C. Bizon, M. D. Shattuck, J. B.
 Swift, W. D. McCormick and H. L. Swinney, Phys. Rev. Lett. 80, 57 (1998), Fig. 1.
 
-Lengths are in diameters D = 2 a. Looks are one cycle of the floor apart, four in schedule.period.
+Lengths are in diameters D = 2 a. Frames are one cycle of the floor apart; schedule.period is four.
 """
 
 import csv
@@ -18,18 +18,18 @@ REFERENCE = Path(__file__).with_name("reference.csv")
 DIAMETER = 2.0  # a
 DEPTH = 5.42  # H/D
 FOLDS = (2, 4, 6)
-REPEATS, FAR = 4, 16
-"""Cycles after which every published pattern is the same, and those that show whether it stays."""
-LEAST, STAYS = 0.3, 0.8
-"""Correlation of heights REPEATS cycles apart from which on there is a pattern, and the share of it
-that a settled one has FAR cycles apart."""
-PERIODS, SAME = (1, 2, 4), 0.9
+CYCLES, STABILITY_DELAY = 4, 16
+"""Cycles after which every published pattern repeats, and cycles over which a settled one stays."""
+MINIMUM_CORRELATION, SETTLED_SHARE = 0.3, 0.8
+"""Least correlation of heights CYCLES apart in a pattern, and the share of it that a settled
+pattern has after STABILITY_DELAY."""
+PERIODS, PERIOD_SHARE = (1, 2, 4), 0.9
 FITS, FITS_WELL = 1.5, 2.0
 """Published wavelengths that a box must hold for its wavelength, and for its order."""
 
 
 class Panel(NamedTuple):
-    """A panel of the figure; NaN is what it does not say."""
+    """A panel of the figure; unpublished values are NaN."""
 
     panel: str
     case: str
@@ -38,7 +38,7 @@ class Panel(NamedTuple):
     pattern: str
     wavelength: float  # D
     repeats: int  # cycles
-    settled: float  # cycles after which it was seen to be settled
+    settled: float  # cycles until it had settled
     fold: int | None  # m of Q_m
     order: float  # Q_m
 
@@ -50,13 +50,13 @@ def panels() -> list[Panel]:
 
 
 def _panel(panel, case, pattern, repeats, fold, **numbers):
-    known = {name: float(text) if text else math.nan for name, text in numbers.items()}
-    whole = int(fold) if fold else None
-    return Panel(panel, case, pattern=pattern, repeats=int(repeats), fold=whole, **known)
+    values = {name: float(text) if text else math.nan for name, text in numbers.items()}
+    fold_number = int(fold) if fold else None
+    return Panel(panel, case, pattern=pattern, repeats=int(repeats), fold=fold_number, **values)
 
 
-def beside(layers: xr.Dataset) -> Iterator[tuple[Panel, xr.Dataset]]:
-    """Yield each panel with our layer of its case, where there is one."""
+def layers_of_panels(layers: xr.Dataset) -> Iterator[tuple[Panel, xr.Dataset]]:
+    """Yield each panel whose case is in our data, with the layer of this case."""
     for panel in panels():
         if panel.case in layers.case:
             yield panel, layers.sel(case=panel.case).isel(r=0, beta=0)
@@ -68,42 +68,46 @@ def side(layer: xr.Dataset) -> float:
 
 
 def room(panel: Panel, layer: xr.Dataset) -> float:
-    """Return how many published wavelengths the box holds."""
+    """Return the side of the box in published wavelengths."""
     return side(layer) / panel.wavelength
 
 
 def cycles(panel: Panel, layer: xr.Dataset) -> float:
-    """Return how many cycles of the floor went by before the measurement; g = 1 a/T^2."""
+    """Return the number of cycles of the floor before the measurement; g = 1 a/T^2."""
     return float(layer.measured_from) * panel.f_star / math.sqrt(DEPTH * DIAMETER)
 
 
 def wavelength(layer: xr.Dataset) -> Estimate:
-    """Return the wavelength in D; its error is no less than half a shell."""
+    """Return the wavelength in D; its error is at least half a shell."""
     error = max(float(layer.wavelength_stderr), float(layer.wavelength_resolution))
     return Estimate(float(layer.wavelength) / DIAMETER, error / DIAMETER)
 
 
 def order(layer: xr.Dataset, fold: int) -> Estimate:
     """Return Q_fold on the shell with most power."""
-    one = layer.sel(fold=fold)
-    found = (one.fold_order, one.fold_order_stderr, one.fold_order_dof)
-    return Estimate(*map(float, found))
+    shell = layer.sel(fold=fold)
+    values = (shell.fold_order, shell.fold_order_stderr, shell.fold_order_dof)
+    return Estimate(*map(float, values))
 
 
 def correlation(layer: xr.Dataset, cycles: int) -> Estimate:
-    """Return the correlation of heights so many cycles apart."""
-    one = layer.isel(pattern_delay=cycles)
-    found = (one.height_autocorrelation, one.height_autocorrelation_stderr)
-    return Estimate(*map(float, found), float(one.height_autocorrelation_dof))
+    """Return the correlation of heights `cycles` apart."""
+    delayed = layer.isel(pattern_delay=cycles)
+    values = (delayed.height_autocorrelation, delayed.height_autocorrelation_stderr)
+    return Estimate(*map(float, values), float(delayed.height_autocorrelation_dof))
 
 
 def settled(layer: xr.Dataset) -> bool:
-    """Return whether there is a pattern that stays as it is."""
-    near, far = (correlation(layer, cycles).value for cycles in (REPEATS, FAR))
-    return near >= LEAST and far >= STAYS * near
+    """Return whether there is a pattern that persists."""
+    first, last = (correlation(layer, cycles).value for cycles in (CYCLES, STABILITY_DELAY))
+    return first >= MINIMUM_CORRELATION and last >= SETTLED_SHARE * first
 
 
 def period(layer: xr.Dataset) -> int:
-    """Return after how many cycles the pattern repeats."""
-    found = {cycles: correlation(layer, cycles).value for cycles in range(1, REPEATS + 1)}
-    return next(cycles for cycles in PERIODS if found[cycles] >= SAME * max(found.values()))
+    """Return the period of the pattern, in cycles."""
+    correlations = {cycles: correlation(layer, cycles).value for cycles in range(1, CYCLES + 1)}
+    return next(
+        cycles
+        for cycles in PERIODS
+        if correlations[cycles] >= PERIOD_SHARE * max(correlations.values())
+    )

@@ -1,4 +1,4 @@
-"""A slide of each layer: from above, four cycles in turn, beside what is published of it."""
+"""A slide of each layer: four cycles seen from above, with the published and our values."""
 
 from collections.abc import Iterator
 
@@ -6,14 +6,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.plotting import GREY, LOOKS, THEORY
+from roughgas.plotting import GREY, LINE_STYLES, THEORY
 
-from .ball import CYCLE, flights, path
-from .figure import draw_cycles, draw_height, measured, published, size
-from .published import REPEATS, Panel, beside, panels
+from .ball import CYCLE, ball_heights, flights
+from .figure import draw_cycles, draw_height, measured_text, published_text, size_text
+from .published import CYCLES, Panel, layers_of_panels, panels
 
-WIDE, TALL = 8.4, 4.2  # inches
-SHAKEN = """\
+WIDTH, HEIGHT = 8.4, 4.2  # inches
+SETUP_TEXT = """\
 A layer of spheres, 5.42 diameters D deep, lies on a plate that moves as a sine; Γ is its largest
 acceleration over gravity. The layer lands like a ball that does not bounce (line): it stays on the
 plate (grey), and leaves when that next falls away faster than gravity. **At each landing the
@@ -22,7 +22,7 @@ it is itself after two flights. At Γ = 3 and 4 a flight takes about a cycle, at
 
 C. Bizon, M. D. Shattuck, J. B. Swift, W. D. McCormick and H. L. Swinney published the pictures
 (Phys. Rev. Lett. 80, 57, 1998): squares, stripes and hexagons, in simulations and experiments."""
-OF_EACH = """\
+LAYER_TEXT = """\
 Γ = {gamma:g}, f\\* = {f_star:g}; flights of the ball: {flights} cycles.
 
 - **Published** (60 000 spheres in a box of 100 D): {published}.
@@ -33,42 +33,46 @@ From above, the lighter the higher, grey the mean; in flight there is no pattern
 
 def draw(layers: xr.Dataset) -> Iterator[tuple[str, str, Figure]]:
     """Yield name, text and figure of each slide."""
-    yield "What is shaken, and why the pattern turns over", SHAKEN, _balls()
-    there: dict[str, tuple[list[Panel], xr.Dataset]] = {}
-    for panel, layer in beside(layers):  # c and d are one layer
-        there.setdefault(panel.case, ([], layer))[0].append(panel)
-    for of_case, layer in there.values():
-        panel, number = of_case[0], layers.attrs["particles"]
-        text = OF_EACH.format(
+    yield "What is shaken, and why the pattern turns over", SETUP_TEXT, _draw_balls()
+    cases: dict[str, tuple[list[Panel], xr.Dataset]] = {}
+    for panel, layer in layers_of_panels(layers):  # c and d are the same layer
+        cases.setdefault(panel.case, ([], layer))[0].append(panel)
+    for case_panels, layer in cases.values():
+        panel, number = case_panels[0], layers.attrs["particles"]
+        text = LAYER_TEXT.format(
             gamma=panel.gamma,
             f_star=panel.f_star,
-            flights=" and ".join(f"{one:.2f}" for one in flights(panel.gamma)),
-            published=published(panel),
-            size=size(panel, layer, number),
-            measured=measured(panel, layer),
+            flights=" and ".join(f"{length:.2f}" for length in flights(panel.gamma)),
+            published=published_text(panel),
+            size=size_text(panel, layer, number),
+            measured=measured_text(panel, layer),
         )
-        yield f"({', '.join(one.panel for one in of_case)}) {panel.pattern}", text, _cycles(layer)
+        yield (
+            f"({', '.join(panel.panel for panel in case_panels)}) {panel.pattern}",
+            text,
+            _draw_layer(layer),
+        )
 
 
-def _balls():
+def _draw_balls():
     """Draw the floor and the ball over four cycles, for each acceleration."""
-    figure = Figure(figsize=(WIDE, TALL), layout="constrained")
-    phase = np.linspace(0.0, REPEATS * CYCLE, 1000)
-    every = list(dict.fromkeys(panel.gamma for panel in panels()))
-    for axes, gamma in zip(figure.subplots(2, 3, sharex=True).flat, every, strict=True):
-        axes.plot(phase / CYCLE, path(gamma, phase), color=LOOKS[1].colour)
+    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
+    phase = np.linspace(0.0, CYCLES * CYCLE, 1000)
+    accelerations = list(dict.fromkeys(panel.gamma for panel in panels()))
+    for axes, gamma in zip(figure.subplots(2, 3, sharex=True).flat, accelerations, strict=True):
+        axes.plot(phase / CYCLE, ball_heights(gamma, phase), color=LINE_STYLES[1].colour)
         axes.fill_between(phase / CYCLE, np.sin(phase), -1.2, color=GREY, lw=0)
         axes.set_title(f"Γ = {gamma:g}", fontsize=9, loc="left")
-        axes.set(yticks=[], xlim=(0, REPEATS), ylim=(-1.2, None))
+        axes.set(yticks=[], xlim=(0, CYCLES), ylim=(-1.2, None))
     figure.supxlabel("cycles of the floor", fontsize=8)
     return figure
 
 
-def _cycles(layer):
+def _draw_layer(layer):
     """Draw four cycles from above, and the mean height over them."""
-    figure = Figure(figsize=(WIDE, TALL), layout="constrained")
+    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(2.2, 1))
-    draw_cycles(above.subplots(1, REPEATS), layer)
+    draw_cycles(above.subplots(1, CYCLES), layer)
     axes = below.subplots()
     draw_height(axes, layer, {"color": THEORY})
     axes.tick_params(labelsize=7)

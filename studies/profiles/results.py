@@ -1,13 +1,13 @@
-"""Profiles across a gas, and the averages of R that they tell apart.
+"""Profiles across a gas, and averages of R from them.
 
-Over the slices of a vibrated bed, and the phases of its floor: density, temperatures, R, and how
-often particles meet. Lun's formula is about averages over collisions; temperatures of slices,
-weighted by the collisions there, should therefore be closer to it than the mean of R(t) is. Of a
-sheared gas: whether the flow is linear, and what theory.transport needs to know.
+Over the slices of a vibrated bed, and the phases of its floor: density, temperatures, R, and the
+collision frequency. Lun's formula is about averages over collisions; temperatures of slices,
+weighted by the collisions there, should therefore be closer to it than the mean of R(t). For a
+sheared gas: deviations of the flow from a linear one, and the quantities in theory.transport.
 
-A temperature is m times the mean square velocity along an axis, or q times that of the spin. The
-mean velocity along the axis of the slices is taken from it, slice by slice and phase by phase; in a
-sheared gas the mean flow and the mean spin are.
+A temperature is m times the mean square velocity along an axis, or q times the mean square spin.
+The mean velocity along the axis of the slices is subtracted, slice by slice and phase by phase; in
+a sheared gas the mean flow and the mean spin are.
 """
 
 import math
@@ -18,13 +18,21 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.tasks import Estimate, along, cell, dataset, markdown, stacked, variables
+from roughgas.tasks import (
+    Estimate,
+    dataset,
+    markdown,
+    read_variables,
+    slices_along,
+    stack_rows,
+    table_cell,
+)
 from roughgas.theory import lun_ratio, moment_of_inertia, shear_factor
 
 from .tasks import point_name
 
 VARIABLES = Path(__file__).with_name("variables.yaml")
-BED = {
+BED_COLUMNS = {
     "R": "mean of R(t)",
     "R_quarters": "at the paper's four phases",
     "R_ratio_of_means": "ratio of means",
@@ -35,7 +43,7 @@ BED = {
     "R_lun": "Lun's formula",
     "speed_factor": "{g³}/{g}, over Maxwellian",
 }
-SHEARED = {
+SHEARED_COLUMNS = {
     "theta": "θ",
     "factor": "theory.shear's factor",
     "rate": "g",
@@ -50,41 +58,44 @@ QUARTERS = 4
 GRID = ("phase", "slice")
 
 
-def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
-    """Return profiles and averages at every point, from all tasks; errors are those over runs."""
+def combine(task_results: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+    """Return profiles and averages at every point, from all tasks; errors are over runs."""
     points, rows = settings["points"], []
     for point in points:
-        runs = [parts[f"{point_name(point)}-{k}"] for k in range(settings["runs"])]
+        runs = [task_results[f"{point_name(point)}-{k}"] for k in range(settings["runs"])]
         sheared = float(runs[0].shear_rate) > 0.0
-        found = [_found(run, point) | (_shear(run) if sheared else NO_SHEAR) for run in runs]
-        rows.append(_estimates(found) | _exact(runs, point))
-    every = stacked(rows) | {"point": [point_name(point) for point in points]}
-    every |= {key: [point[key] for point in points] for key in ("experiment", "r", "beta")}
-    every["phase"] = np.arange(settings["phases"]) / settings["phases"]
-    every["slice"] = range(settings["slices"])
-    return dataset(variables(VARIABLES), every, seed=settings["seed"], runs=settings["runs"])
+        run_averages = [
+            _run_averages(run, point) | (_shear_numbers(run) if sheared else NO_SHEAR)
+            for run in runs
+        ]
+        rows.append(_estimates(run_averages) | _pooled(runs, point))
+    values = stack_rows(rows) | {"point": [point_name(point) for point in points]}
+    values |= {key: [point[key] for point in points] for key in ("experiment", "r", "beta")}
+    values["phase"] = np.arange(settings["phases"]) / settings["phases"]
+    values["slice"] = range(settings["slices"])
+    return dataset(read_variables(VARIABLES), values, seed=settings["seed"], runs=settings["runs"])
 
 
 def fields(run: xr.Dataset, width: float) -> xr.Dataset:
     """Return density, mean velocity and temperatures in the slices at each phase, (phase, slice).
 
-    They are NaN where no particle was found. `width` is that of a slice in a.
+    They are NaN in empty slices. `width` is the width of a slice in a.
     """
     number = run.particles.where(run.particles > 0)
     rising, spin = run.v / number, _mean_spin(run)
-    found = {
+    values = {
         "density": run.particles / (run.samples * run.area * width),
         "velocity": rising,
         "T_across": run.uu / number,
         "T_along": run.vv / number - rising**2,
         "T_rot": run.inertia * (run.ww / number - spin**2) / (2 * run.dimension - 3),
     }
-    return xr.Dataset(found)
+    return xr.Dataset(values)
 
 
-def translational(found: xr.Dataset, dimension: int) -> xr.DataArray:
-    """Return the mean of the temperature over all axes."""
-    return ((dimension - 1) * found.T_across + found.T_along) / dimension
+def translational(temperatures: xr.Dataset, dimension: int) -> xr.DataArray:
+    """Return the mean of the translational temperature over all axes."""
+    return ((dimension - 1) * temperatures.T_across + temperatures.T_along) / dimension
 
 
 def ratio_at_contacts(sums: xr.Dataset, inertia: float) -> xr.DataArray:
@@ -93,17 +104,17 @@ def ratio_at_contacts(sums: xr.Dataset, inertia: float) -> xr.DataArray:
     return rotational / (rotational + sums["v_t^2"]).where(sums.contacts > 0)
 
 
-def _found(run, point) -> dict[str, np.ndarray]:
-    """Return all that has an error bar: by slice, by phase, and scalars."""
-    now, q, D = fields(run, point["slice"]), float(run.inertia), int(run.dimension)
-    mean = now.weighted(run.particles).mean("phase")
+def _run_averages(run, point) -> dict[str, np.ndarray]:
+    """Return all quantities with an error bar: by slice, by phase, and scalars."""
+    run_fields, q, D = fields(run, point["slice"]), float(run.inertia), int(run.dimension)
+    mean = run_fields.weighted(run.particles).mean("phase")
     measured = float(run.samples) * point["period"]
     particles = run.particles.sum("phase") / (run.samples * run.sizes["phase"])
-    meeting = now.weighted(run.contacts).mean(GRID)
+    meeting = run_fields.weighted(run.contacts).mean(GRID)
     E_trans, E_rot, quarter = run.E_trans, run.E_rot, run.sizes["phase"] // QUARTERS
     R = run.R / run.samples
-    found = {
-        "density": now.density.mean("phase"),
+    averages = {
+        "density": run_fields.density.mean("phase"),
         "T_across": mean.T_across,
         "T_along": mean.T_along,
         "T_rot": mean.T_rot,
@@ -119,35 +130,36 @@ def _found(run, point) -> dict[str, np.ndarray]:
         "R_ratio_of_means": _ratio(E_rot.sum(), E_trans.sum()),
         "R_weighted": _ratio(meeting.T_rot, translational(meeting, D)),
         "R_collisional": ratio_at_contacts(run.sum(GRID), q),
-        **_by_pairs(run),
+        **_pair_averages(run),
     }
-    return {name: values.values for name, values in found.items()}
+    return {name: average.values for name, average in averages.items()}
 
 
-def _by_pairs(run):
+def _pair_averages(run):
     """Return R by averages over pairs, weighted by their relative speed g as contacts are.
 
     {b^2 (2 b)^(D-2)} = D/6 (McNamara & Luding 1998, above Lun's formula). `speed_factor` is
-    {g^3}/{g} over its Maxwellian value (D + 1)/D {g^2}, which would make it 1.
+    {g^3}/{g} over its Maxwellian value (D + 1)/D {g^2}.
     """
     q, D, number = run.inertia, run.dimension, run.pairs.where(run.pairs > 0)
     weighted = q * run["g s^2"] / (q * run["g s^2"] + D / 6 * run["g^3"].where(run.g > 0))
     factor = run["g^3"] / run.g / ((D + 1) / D * run["g^2"] / number)
-    found = {f"R_{name}": weighted.sel(company=name) for name in ("level", "meeting")}
-    return found | {"speed_factor": factor.sel(company="level")}
+    ratios = {f"R_{name}": weighted.sel(company=name) for name in ("level", "meeting")}
+    return ratios | {"speed_factor": factor.sel(company="level")}
 
 
-def _shear(run) -> dict[str, float]:
-    """Return what a sheared gas is like, over all slices: see theory.transport.
+def _shear_numbers(run) -> dict[str, float]:
+    """Return the scalars of a sheared gas, over all slices: see theory.transport.
 
-    `theta` is that of E_rot and E_trans, without the mean spin of each instant; `flow_deviation`
-    the root mean square velocity of slices, beyond the linear mean flow, over that of a particle.
+    `theta` is the ratio of E_rot and E_trans, without the mean spin of each instant;
+    `flow_deviation` the root mean square velocity of slices, beyond the linear mean flow, over the
+    thermal velocity of a particle.
     """
-    all_over = run.sum(GRID)
-    number, rate = float(all_over.particles), float(run.shear_rate)
-    T_x, T_y = float(all_over.uu) / number, float(all_over.vv) / number
-    T, spin = (T_x + T_y) / 2, float(all_over.w) / number
-    stress, difference = -float(all_over.uv) / number / T, (T_x - T_y) / (2 * T)
+    total = run.sum(GRID)
+    number, rate = float(total.particles), float(run.shear_rate)
+    T_x, T_y = float(total.uu) / number, float(total.vv) / number
+    T, spin = (T_x + T_y) / 2, float(total.w) / number
+    stress, difference = -float(total.uv) / number / T, (T_x - T_y) / (2 * T)
     flow = (run.u.sum("phase") / run.particles.sum("phase")).values
     return {
         "theta": float(run.E_rot.sum() / run.E_trans.sum()),
@@ -160,51 +172,53 @@ def _shear(run) -> dict[str, float]:
     }
 
 
-NO_SHEAR = dict.fromkeys([name for name in SHEARED if name != "R_collisional"], math.nan)
+NO_SHEAR = dict.fromkeys([name for name in SHEARED_COLUMNS if name != "R_collisional"], math.nan)
 
 
-def _exact(runs, point) -> dict[str, Any]:
-    """Return what has no error bar: fields of all runs together, and what is known beforehand."""
-    first, every = runs[0], xr.concat(runs, "run").sum("run")
+def _pooled(runs, point) -> dict[str, Any]:
+    """Return all quantities without an error bar: fields of all runs together, and constants of the
+    point."""
+    first, total = runs[0], xr.concat(runs, "run").sum("run")
     names = ("area", "dimension", "inertia", "shear_rate")
-    pooled = every.assign({name: first[name] for name in names})
-    now = fields(pooled, point["slice"])
-    found = {f"{name}_at_phase": values.values for name, values in now.items()}
-    measured = float(every.samples) * point["period"] / every.sizes["phase"]
-    meeting = 2 * every.contacts / (every.particles / every.samples * measured)
+    pooled = total.assign({name: first[name] for name in names})
+    pooled_fields = fields(pooled, point["slice"])
+    values = {f"{name}_at_phase": field.values for name, field in pooled_fields.items()}
+    measured = float(total.samples) * point["period"] / total.sizes["phase"]
+    meeting = 2 * total.contacts / (total.particles / total.samples * measured)
     q = float(first.inertia)
-    return found | {
-        "frequency_at_phase": meeting.where(every.particles > 0).values,
-        "height": point["slice"] * (np.arange(every.sizes["slice"]) + 0.5),
+    return values | {
+        "frequency_at_phase": meeting.where(total.particles > 0).values,
+        "height": point["slice"] * (np.arange(total.sizes["slice"]) + 0.5),
         "R_lun": float(lun_ratio(float(point["beta"]), q)),
         "inertia": q,
         "dimension": int(first.dimension),
         "particles": round(float(first.particles.sum() / first.samples / first.sizes["phase"])),
-        "measured": float(every.samples) * point["period"],
-        "collisions": int(every.collisions),
+        "measured": float(total.samples) * point["period"],
+        "collisions": int(total.collisions),
         "imbalance": max(imbalance(run) for run in runs),
-        "cpu_seconds": float(every.cpu_seconds),
+        "cpu_seconds": float(total.cpu_seconds),
     }
 
 
 def imbalance(run: xr.Dataset) -> float:
-    """Return by how much energies summed over slices miss those of the whole gas, relatively.
+    """Return the relative difference between energies summed over slices and the energies of the
+    whole gas.
 
-    That of the spins of a sheared gas is left out, since there the mean spin of each instant is
-    taken from it.
+    The spins of a sheared gas are left out, since the mean spin of each instant is subtracted
+    there.
     """
     D, sums = int(run.dimension), run.sum("slice")
     squares = {"E_trans": ((D - 1) * sums.uu + sums.vv) / D}
     if not run.shear_rate > 0:
         squares["E_rot"] = run.inertia * sums.ww / (2 * D - 3)
     number = sums.particles / run.samples
-    misses = [abs(one / (2 * number * run[name]) - 1).max() for name, one in squares.items()]
+    misses = [abs(square / (2 * number * run[name]) - 1).max() for name, square in squares.items()]
     return max(map(float, misses))
 
 
-def _estimates(found) -> dict[str, Estimate]:
+def _estimates(averages_of_runs) -> dict[str, Estimate]:
     """Return means over runs and their standard errors."""
-    rows, root = stacked(found), math.sqrt(len(found))
+    rows, root = stack_rows(averages_of_runs), math.sqrt(len(averages_of_runs))
     return {
         name: Estimate(values.mean(axis=0), values.std(axis=0, ddof=1) / root)
         for name, values in rows.items()
@@ -221,16 +235,16 @@ def _ratio(rotational, trans):
 
 
 def table(data: xr.Dataset) -> str:
-    """Return R of beds by each average, and what makes R of sheared gases what it is."""
-    points = along(data, "point")
-    beds = [one for one in points if np.isnan(one.theta)]
-    head = ["bed", *BED.values()]
-    rows = [[point_label(one), *(_written(one, name) for name in BED)] for one in beds]
-    sheared = ["sheared gas", *SHEARED.values()]
+    """Return R of beds by each average, and the factors of R in sheared gases, Markdown."""
+    points = slices_along(data, "point")
+    beds = [point for point in points if np.isnan(point.theta)]
+    head = ["bed", *BED_COLUMNS.values()]
+    rows = [[point_label(bed), *(_cell_text(bed, name) for name in BED_COLUMNS)] for bed in beds]
+    sheared = ["sheared gas", *SHEARED_COLUMNS.values()]
     gases = [
-        [point_label(one), *(_written(one, name) for name in SHEARED)]
-        for one in points
-        if np.isfinite(one.theta)
+        [point_label(gas), *(_cell_text(gas, name) for name in SHEARED_COLUMNS)]
+        for gas in points
+        if np.isfinite(gas.theta)
     ]
     return (
         f"## Averages of R in a bed\n\n{markdown(head, rows)}\n"
@@ -239,16 +253,16 @@ def table(data: xr.Dataset) -> str:
 
 
 def point_label(point: xr.Dataset) -> str:
-    """Return what a point of the study of profiles is called."""
-    what = "spheres" if int(point.dimension) == 3 else "disks"
+    """Return the label of a point: particles, r, beta and an unusual q."""
+    shape = "spheres" if int(point.dimension) == 3 else "disks"
     usual = moment_of_inertia(int(point.dimension))
     q = "" if float(point.inertia) == usual else f", q = {float(point.inertia):g}"
     beta = str(point.beta.values).replace("-", "−")
-    return f"{what}, r = {point.r.values}, β = {beta}{q}"
+    return f"{shape}, r = {point.r.values}, β = {beta}{q}"
 
 
-def _written(data, name):
-    """Return a value with its error if it has one."""
+def _cell_text(data, name):
+    """Return a value as text, with its error if it has one."""
     if f"{name}_stderr" not in data:
         return f"{float(data[name]):.4f}"
-    return cell(data, name, "")
+    return table_cell(data, name, "")

@@ -1,9 +1,9 @@
 """Sums over the particles in slices across a gas, at phases of its drive, and over contacts there.
 
-Slices are equally wide along the last axis, that of gravity or of the velocity's gradient, and
-begin at 0; the last one holds all that is beyond. Samples are taken at the beginning of each phase.
-A bed goes on from contact to contact, and each contact is counted in the slice halfway between its
-partners and at the nearest phase.
+Slices are equally wide along the last axis, the axis of gravity or of the velocity's gradient, and
+begin at 0; the last slice also holds everything above it. Samples are taken at the beginning of
+each phase. A bed is advanced from contact to contact, and each contact is counted in the slice
+halfway between its partners and at the nearest phase.
 """
 
 import math
@@ -15,46 +15,49 @@ import numpy as np
 import xarray as xr
 
 from roughgas.gas import Gas, build, inertia, shear_rate
-from roughgas.tasks import check_alike, stream, timed
+from roughgas.tasks import require_single_species, seed_sequence, timed
 
 SUMS = ("particles", "u", "v", "uu", "vv", "uv", "w", "ww")
-"""Over particles: u is the velocity along the first axis without the mean flow, v that along the
-last; uu is the mean square over all axes but the last, w the first component of the spin, ww the
-square of the spin."""
+"""Sums over particles: u is the velocity along the first axis without the mean flow, v the velocity
+along the last; uu is the mean square over all axes but the last, w the first component of the spin,
+ww the square of the spin."""
 CONTACTS = ("v_t^2", "v_r^2", "v_t.v_r")
-WHOLE = ("E_trans", "E_rot", "R")
+GAS_VARIABLES = ("E_trans", "E_rot", "R")
 PAIRS = ("pairs", "g", "g^2", "g^3", "s^2", "g s^2")
-"""Over pairs: g is their relative speed, s that of their surfaces due to spin, across a direction
-that is random."""
-LEVEL, NEAR = 1.0, 4.0  # a
+"""Sums over pairs: g is their relative speed, s the relative speed of their surfaces due to spin,
+across a random direction."""
+LEVEL_DISTANCE, NEAR_DISTANCE = 1.0, 4.0  # a
 COMPANY = ("level", "meeting")
-"""Of pairs: all whose heights differ by less than LEVEL; those of them that are nearer than NEAR
-and approach each other."""
+"""Classes of pairs: all whose heights differ by less than LEVEL_DISTANCE; those of them that are
+nearer than NEAR_DISTANCE and approach each other."""
 
 
 class Profile:
-    """A gas, and what was summed up over it: `sums`, `contacts` and `whole` (names, phases, ...).
+    """A gas and its sums: `sums`, `contacts` and `gas_sums` (names, phases, ...).
 
     Lengths in a, times in T.
     """
 
     def __init__(self, gas: Gas, point: Mapping[str, Any], phases: int, slices: int) -> None:
         self.gas, self.width, self.phases = gas, point["slice"], phases
-        self.period, self.begun = point["period"], gas.time
-        gas.look()
+        self.period, self.start = point["period"], gas.time
+        gas.sample_now()
         self.sums = np.zeros((len(SUMS), phases, slices))
         self.contacts = np.zeros((1 + len(CONTACTS), phases, slices))
-        self.whole = np.zeros((len(WHOLE), phases))
+        self.gas_sums = np.zeros((len(GAS_VARIABLES), phases))
         self.pairs = np.zeros((len(PAIRS), len(COMPANY)))
         self.partners = np.triu_indices(gas.particles, 1)
 
-    def go_on(self, number: int) -> None:
-        """Go on to the beginning of the next phase, the `number`-th in all, and sample there."""
-        self._advance(self.begun + (number + 1) * self.period / self.phases)
+    def sample_next_phase(self, number: int) -> None:
+        """Advance the gas to the begin of the next phase, the `number`-th in all, and sample
+        there."""
+        self._advance(self.start + (number + 1) * self.period / self.phases)
         phase = (number + 1) % self.phases
-        E_trans, E_rot = (float(x[0]) for x in self.gas.energies(self.gas.sample).there())
+        E_trans, E_rot = (
+            float(x[0]) for x in self.gas.energies(self.gas.sample).present_components()
+        )
         R = E_rot / (E_rot + E_trans)
-        self.whole[:, phase] += E_trans, E_rot, R
+        self.gas_sums[:, phase] += E_trans, E_rot, R
         position, velocity = self.gas.positions_and_velocities()
         for row, values in zip(self.sums, self._particles(position, velocity), strict=True):
             row[phase] += values
@@ -76,43 +79,48 @@ class Profile:
 
     def _pairs(self, position, velocity):
         """Return PAIRS of each COMPANY, (names, companies)."""
-        one, two = self.partners
-        level = np.abs(position[one, -1] - position[two, -1]) < LEVEL
-        one, two = one[level], two[level]
-        apart, between = position[one] - position[two], velocity[one] - velocity[two]
+        first, second = self.partners
+        level = np.abs(position[first, -1] - position[second, -1]) < LEVEL_DISTANCE
+        first, second = first[level], second[level]
+        separation, relative_velocity = (
+            position[first] - position[second],
+            velocity[first] - velocity[second],
+        )
         for axis, length in enumerate(self.gas.scene.box[:-1]):
-            apart[:, axis] -= length * np.round(apart[:, axis] / length)
-        meeting = (apart**2).sum(axis=1) < NEAR**2
-        meeting &= (apart * between).sum(axis=1) < 0.0
+            separation[:, axis] -= length * np.round(separation[:, axis] / length)
+        meeting = (separation**2).sum(axis=1) < NEAR_DISTANCE**2
+        meeting &= (separation * relative_velocity).sum(axis=1) < 0.0
         spin = self.gas.spins()
-        square = ((spin[one] + spin[two]) ** 2).sum(axis=1) * (2 / 3 if spin.shape[1] > 1 else 1)
-        g = np.sqrt((between**2).sum(axis=1))
+        square = ((spin[first] + spin[second]) ** 2).sum(axis=1) * (
+            2 / 3 if spin.shape[1] > 1 else 1
+        )
+        g = np.sqrt((relative_velocity**2).sum(axis=1))
         values = np.array([np.ones(len(g)), g, g**2, g**3, square, g * square])
         return np.stack([values.sum(axis=1), values[:, meeting].sum(axis=1)], axis=1)
 
     def _advance(self, until: float) -> None:
-        """Go on, and count contacts: in a bed each where it happens, elsewhere the same in all
+        """Advance the gas and count contacts: in a bed each in its slice, otherwise evenly over all
         slices."""
         if self.gas.scene.box[-1] is None:
-            return self._go_on_by_contacts(until)
+            return self._advance_by_contacts(until)
         before, collisions = self.gas.contact_sums(), self.gas.collisions
         self.gas.in_time(until - self.gas.time, 1)
-        made = 1.0 * (self.gas.collisions - collisions), *(self.gas.contact_sums() - before)
-        self.contacts[:, self._phase()] += np.array(made)[:, None] / self.contacts.shape[-1]
+        increments = 1.0 * (self.gas.collisions - collisions), *(self.gas.contact_sums() - before)
+        self.contacts[:, self._phase()] += np.array(increments)[:, None] / self.contacts.shape[-1]
 
-    def _go_on_by_contacts(self, until):
+    def _advance_by_contacts(self, until):
         before = self.gas.contact_sums()
         while self.gas.step(until, 1):
-            now = self.gas.contact_sums()
-            self.contacts[:, self._phase(), self._slice_of_contact()] += 1.0, *(now - before)
-            before = now
+            sums = self.gas.contact_sums()
+            self.contacts[:, self._phase(), self._slice_of_contact()] += 1.0, *(sums - before)
+            before = sums
 
     def _phase(self):
         """Return the number of the nearest phase."""
-        return round((self.gas.time - self.begun) / self.period * self.phases) % self.phases
+        return round((self.gas.time - self.start) / self.period * self.phases) % self.phases
 
     def _slice_of_contact(self):
-        """Return the slice of the contact that is just over; its partners are still there."""
+        """Return the slice of the last contact, whose partners have not moved since."""
         *_, positions = self.gas.last_contact()
         return self._slices(positions[:, -1].mean())
 
@@ -122,11 +130,13 @@ class Profile:
 
 def tasks(settings: Mapping[str, Any]) -> list[str]:
     """Return the names of all runs."""
-    return [f"{point_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])]
+    return [
+        f"{point_name(point)}-{k}" for point in settings["points"] for k in range(settings["runs"])
+    ]
 
 
 def point_name(point: Mapping[str, Any]) -> str:
-    """Return the name of a point; its runs add `-0`, `-1` ... Random numbers hang on it."""
+    """Return the name of a point; its runs add `-0`, `-1` ... Random numbers depend on it."""
     name = f"{point['experiment']}_r{point['r']}_beta{point['beta']}"
     return name + (f"_{point['name']}" if "name" in point else "")
 
@@ -134,12 +144,12 @@ def point_name(point: Mapping[str, Any]) -> str:
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
     """Return the sums of one run at a point, over (phase, slice), and over the whole gas (phase,).
 
-    `samples` is the number of samples at each phase, `measured` the T that these cover.
+    `samples` is the number of samples at each phase, `measured` their duration in T.
     """
-    point = next(one for one in settings["points"] if task.startswith(point_name(one) + "-"))
+    point = next(row for row in settings["points"] if task.startswith(point_name(row) + "-"))
     number = int(task.removeprefix(point_name(point) + "-"))
-    seed = stream(settings, zlib.crc32(point_name(point).encode()), number)
-    check_alike(experiments[point["experiment"]])
+    seed = seed_sequence(settings, zlib.crc32(point_name(point).encode()), number)
+    require_single_species(experiments[point["experiment"]])
     profile = _equilibrated(point, experiments[point["experiment"]], settings, seed)
     periods = round(point["measure"] / point["period"])
     seconds, before = 0.0, profile.gas.collisions
@@ -147,32 +157,32 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
         seconds += timed(_one_period, profile, done)[1]
         progress(done + 1, periods)
     grid = ("phase", "slice")
-    found: dict[str, Any] = dict(zip(SUMS, ((grid, one) for one in profile.sums), strict=True))
-    for name, values in zip(("contacts", *CONTACTS), profile.contacts, strict=True):
-        found[name] = (grid, values)
-    for name, values in zip(WHOLE, profile.whole, strict=True):
-        found[name] = ("phase", values)
-    for name, values in zip(PAIRS, profile.pairs, strict=True):
-        found[name] = ("company", values)
-    found |= {"samples": periods, "cpu_seconds": seconds} | _about(profile.gas.scene)
-    found["collisions"] = profile.gas.collisions - before
-    return xr.Dataset(found, {"company": list(COMPANY)})
+    columns: dict[str, Any] = dict(zip(SUMS, ((grid, sums) for sums in profile.sums), strict=True))
+    for name, sums in zip(("contacts", *CONTACTS), profile.contacts, strict=True):
+        columns[name] = (grid, sums)
+    for name, sums in zip(GAS_VARIABLES, profile.gas_sums, strict=True):
+        columns[name] = ("phase", sums)
+    for name, sums in zip(PAIRS, profile.pairs, strict=True):
+        columns[name] = ("company", sums)
+    columns |= {"samples": periods, "cpu_seconds": seconds} | _scene_numbers(profile.gas.scene)
+    columns["collisions"] = profile.gas.collisions - before
+    return xr.Dataset(columns, {"company": list(COMPANY)})
 
 
-def _about(scene):
-    """Return what the sums are turned into averages with; `area` is that of a slice, a^(D - 1)."""
-    found = {"dimension": len(scene.box), "inertia": inertia(scene.effects)}
-    return found | {"area": math.prod(scene.box[:-1]), "shear_rate": shear_rate(scene)}
+def _scene_numbers(scene):
+    """Return the constants that turn sums into averages; `area` is the area of a slice, a^(D -
+    1)."""
+    values = {"dimension": len(scene.box), "inertia": inertia(scene.effects)}
+    return values | {"area": math.prod(scene.box[:-1]), "shear_rate": shear_rate(scene)}
 
 
 def _one_period(profile, done):
     for phase in range(profile.phases):
-        profile.go_on(done * profile.phases + phase)
+        profile.sample_next_phase(done * profile.phases + phase)
 
 
 def _equilibrated(point, experiment, settings, seed):
-    effects = experiment["effects"] | point.get("effects", {}) | {"contact_averages": {}}
-    experiment = experiment | {"effects": effects}
+    experiment = experiment.with_effects(point.get("effects", {}) | {"contact_averages": {}})
     scene = build(experiment, float(point["r"]), float(point["beta"]))
     gas = Gas.start(scene, experiment, np.random.default_rng(seed))
     gas.in_time(1.0, round(point["equilibrate"]))

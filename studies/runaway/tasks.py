@@ -1,6 +1,6 @@
 """A cooling gas with friction until spin has outlived translation, without positions or by events.
 
-It starts from equilibrium as smooth disks, without spin, and is looked at after each collision per
+It starts from equilibrium as smooth disks, without spin. R is sampled after each collision per
 particle.
 """
 
@@ -12,18 +12,19 @@ import numpy as np
 import xarray as xr
 
 from roughgas.gas import Gas, build, ratio
-from roughgas.tasks import dsmc, stream, timed
+from roughgas.tasks import dsmc, seed_sequence, timed
 from roughgas.tasks.free_cooling import FreeCooling
-from roughgas.theory import ESCAPED
+from roughgas.theory import RUNAWAY_R
 
 SIMULATED = ("dsmc", "events")
-"""How a gas is simulated."""
-STRIDE = 4  # collisions per particle between two looks at single particles
-WHOLLY = 0.999  # R up to which the example is followed
+"""Methods of simulation."""
+STEP_LENGTH = 4  # collisions per particle between two samples of single particles
+END_OF_EXAMPLE = 0.999  # R at the end of the example
 SERIES = ("R", "largest_share", "participation")
 
 Step = Callable[[], tuple[np.ndarray, np.ndarray]]
-"""Lets a gas make STRIDE collisions per particle: R after each, and the spins in the end."""
+"""Function that advances a gas by STEP_LENGTH collisions per particle, and returns R after each and
+the final spins."""
 
 
 def tasks(settings: Mapping[str, Any]) -> list[str]:
@@ -39,41 +40,42 @@ def gas_name(kind: str, particles: int, mu: float) -> str:
 def gases_of(settings: Mapping[str, Any]) -> dict[str, tuple[str, float, Mapping[str, Any]]]:
     """Return (kind, mu, particles and lengths) of each gas by name, the longest first.
 
-    The random numbers of a gas are of its place in this list.
+    The random numbers of a gas depend on its position in this list.
     """
     gases = [
-        (kind, mu, one) for kind in SIMULATED for one in settings[kind] for mu in settings["mu"]
+        (kind, mu, row) for kind in SIMULATED for row in settings[kind] for mu in settings["mu"]
     ]
     gases += [("example", mu, settings["example"]) for mu in settings["example"]["mu"]]
-    gases.sort(key=_collisions, reverse=True)
-    return {gas_name(kind, one["particles"], mu): (kind, mu, one) for kind, mu, one in gases}
+    gases.sort(key=_cost, reverse=True)
+    return {gas_name(kind, row["particles"], mu): (kind, mu, row) for kind, mu, row in gases}
 
 
-def _collisions(gas):
-    """Return how many a gas makes at most, one by events counting as much as it takes longer."""
-    kind, _, one = gas
-    return (20 if kind == "events" else 1) * one["particles"] * one["limit"] * one.get("runs", 1)
+def _cost(gas):
+    """Return the largest number of collisions of a gas, weighted by their cost: by events 20
+    times."""
+    kind, _, row = gas
+    return (20 if kind == "events" else 1) * row["particles"] * row["limit"] * row.get("runs", 1)
 
 
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
-    """Return what one task finds, as results.combine takes it."""
+    """Return the dataset of one task, for results.combine."""
     gases = gases_of(settings)
-    kind, mu, about = gases[task]
+    kind, mu, row = gases[task]
     cooling = FreeCooling(experiments["cooling"], float(settings["r"]), float(settings["beta"]))
     start = {"events": by_events, "dsmc": without_positions, "example": without_positions}[kind]
-    place = 1 + list(gases).index(task)
-    escape(start(cooling, settings, mu, 100, stream(settings, 0)), STRIDE)
-    seeds = stream(settings, place).spawn(about.get("runs", 1))
+    key = 1 + list(gases).index(task)
+    run_until_escape(start(cooling, settings, mu, 100, seed_sequence(settings, 0)), STEP_LENGTH)
+    seeds = seed_sequence(settings, key).spawn(row.get("runs", 1))
     if kind == "example":
-        step = start(cooling, settings, mu, about["particles"], seeds[0])
-        columns, seconds = timed(follow, step, about["limit"])
-        found = {name: ("sample", column) for name, column in zip(SERIES, columns, strict=True)}
-        return xr.Dataset(found | {"seconds": seconds})
+        step = start(cooling, settings, mu, row["particles"], seeds[0])
+        columns, seconds = timed(record_series, step, row["limit"])
+        values = {name: ("sample", column) for name, column in zip(SERIES, columns, strict=True)}
+        return xr.Dataset(values | {"seconds": seconds})
     rows = []
     for k, seed in enumerate(seeds):
-        step = start(cooling, settings, mu, about["particles"], seed)
-        found, seconds = timed(escape, step, about["limit"])
-        rows.append((*found, seconds))
+        step = start(cooling, settings, mu, row["particles"], seed)
+        values, seconds = timed(run_until_escape, step, row["limit"])
+        rows.append((*values, seconds))
         progress(k + 1, len(seeds))
     names = ("time", "observed", *SERIES[1:], "seconds")
     columns = zip(names, np.array(rows).T, strict=True)
@@ -81,56 +83,58 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
 
 
 def without_positions(cooling: FreeCooling, settings, mu, particles, seed) -> Step:
-    """Return how to move a homogeneous gas by direct simulation Monte Carlo."""
+    """Return the Step of a homogeneous gas by direct simulation Monte Carlo."""
     rng, (r, beta, dimension, q) = np.random.default_rng(seed), cooling.constants
     gas = dsmc.new_gas(particles, 0.0, rng, dimension, q)
     material = dsmc.material(r, beta, dimension, q, mu=mu)
-    return lambda: (dsmc.run(gas, material, rng, 1.0, STRIDE).R, gas.spin)
+    return lambda: (dsmc.run(gas, material, rng, 1.0, STEP_LENGTH).R, gas.spin)
 
 
 def by_events(cooling: FreeCooling, settings, mu, particles, seed) -> Step:
-    """Return how to move an event-driven gas in a box that it fills to the packing."""
-    effects = dict(cooling.experiment["effects"]) | {"friction": {"mu": mu}}
-    experiment = dict(cooling.experiment) | {"particles": particles, "effects": effects}
-    there = cooling._replace(experiment=experiment).at_packing(settings["packing"])
-    scene = build(there.experiment, there.r, there.beta)
-    gas = Gas.start(scene, there.experiment, np.random.default_rng(seed))
-    gas.thermalise(experiment["schedule"]["thermalise"])
-    gas.cool(STRIDE * gas.count(1.0))
+    """Return the Step of an event-driven gas in a box that it fills to the packing."""
+    changes = {"particles": particles, "effects": {"friction": {"mu": mu}}}
+    experiment = cooling.experiment.changed(changes)
+    gas_in_box = cooling._replace(experiment=experiment).at_packing(settings["packing"])
+    scene = build(gas_in_box.experiment, gas_in_box.r, gas_in_box.beta)
+    gas = Gas.start(scene, gas_in_box.experiment, np.random.default_rng(seed))
+    gas.thermalise(experiment.schedule.thermalise)
+    gas.cool(STEP_LENGTH * gas.count(1.0))
 
     def step():
-        rows = gas.in_collisions(gas.count(1.0), STRIDE)
+        rows = gas.in_collisions(gas.count(1.0), STEP_LENGTH)
         return ratio(gas.energies(rows)), gas.spins()
 
     return step
 
 
-def escape(step: Step, limit: int) -> tuple[float, float, float, float]:
-    """Return the collisions per particle until R > ESCAPED (NaN if that is not within `limit`), how
-    many were observed, and `participation` when it was last looked at."""
-    for passed in range(0, limit, STRIDE):
+def run_until_escape(step: Step, limit: int) -> tuple[float, float, float, float]:
+    """Return the collisions per particle until R > RUNAWAY_R (NaN if not reached within `limit`),
+    the number observed, and `participation` at the last step."""
+    for passed in range(0, limit, STEP_LENGTH):
         R, spin = step()
-        beyond = np.flatnonzero(R > ESCAPED)
+        beyond = np.flatnonzero(R > RUNAWAY_R)
         if beyond.size:
             time = float(passed + beyond[0] + 1)
             return time, time, *participation(spin)
-    return math.nan, float(passed + STRIDE), *participation(spin)
+    return math.nan, float(passed + STEP_LENGTH), *participation(spin)
 
 
-def follow(step: Step, limit: int) -> np.ndarray:
-    """Return SERIES every STRIDE collisions per particle up to `limit`, NaN after R > WHOLLY."""
-    rows = np.full((limit // STRIDE, len(SERIES)), math.nan)
+def record_series(step: Step, limit: int) -> np.ndarray:
+    """Return SERIES every STEP_LENGTH collisions per particle up to `limit`, NaN after R >
+    END_OF_EXAMPLE."""
+    rows = np.full((limit // STEP_LENGTH, len(SERIES)), math.nan)
     for k in range(len(rows)):
         R, spin = step()
         rows[k] = R[-1], *participation(spin)
-        if R[-1] > WHOLLY:
+        if R[-1] > END_OF_EXAMPLE:
             break
     return rows.T
 
 
 def participation(spin: np.ndarray) -> tuple[float, float]:
-    """Return the largest share of a particle in the energy of the spins, shape (N, D'), and the
-    participation number (sum e)^2/sum e^2: how many particles hold that energy, if alike."""
+    """Return the largest share of one particle in the energy of the spins, shape (N, D'), and
+    the participation number (sum e)^2/sum e^2, the equivalent number of particles with equal
+    energies."""
     energy = np.sum(spin**2, axis=1)
     total = energy.sum()
     return float(energy.max() / total), float(total**2 / np.sum(energy**2))

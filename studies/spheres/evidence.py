@@ -1,10 +1,10 @@
-"""R of sheared spheres beside a formula for planetary rings, row by row."""
+"""R of sheared spheres against a formula for planetary rings, as rows of evidence."""
 
 from collections.abc import Iterator
 
 import xarray as xr
 
-from roughgas.judging import Estimate, Row, of_ratio
+from roughgas.judging import Estimate, Row, ratio_sample
 
 SOURCE = "Morishima & Salo 2004, Bull. Am. Astron. Soc. 36, 1109 (DPS 36, 19.01)"
 READ = (
@@ -18,17 +18,17 @@ def rows(sheared: xr.Dataset) -> Iterator[Row]:
     """Yield R at each point with a steady state."""
     excess = sheared.R * (1.0 - sheared.R) / sheared.attrs["particles"]
     counted = f"D (N - 1) translational degrees of freedom: R lower by up to {excess.max():.4f}"
-    found = of_ratio(sheared, sheared.R - excess)
-    for index, beta in enumerate(found.places["beta"]):
+    sample = ratio_sample(sheared, sheared.R - excess)
+    for index, beta in enumerate(sample.coordinates["beta"]):
         ratio = 2.0 * (1.0 + beta) / (14.0 - 5.0 * (1.0 + beta))
         yield Row(
             quantity="R of spheres under uniform shear",
-            at=found.place(index),
+            at=sample.point_text(index),
             tier="theory",
             source=SOURCE,
             read=READ,
             theirs=Estimate(ratio / (1.0 + ratio), 0.0),
-            ours=found.at(index),
+            ours=sample.at(index),
             corrections=counted,
             reason=REASON,
         )

@@ -1,4 +1,4 @@
-"""Exponents of time with which viscoelastic gases cool, beside those that others have published."""
+"""Exponents of time of cooling viscoelastic gases, against published ones, as rows of evidence."""
 
 from collections.abc import Iterator
 
@@ -19,24 +19,24 @@ LAWS = {
         "holds at long times, when normal losses have become small beside those of roughness",
     ),
 }
-"""Source, its law, and what is known of why the numbers differ, by exponent."""
+"""Source, law, and reason of differences, by exponent."""
 
 
 def rows(gas: xr.Dataset) -> Iterator[Row]:
     """Yield -d ln E_trans/d ln t at each point."""
-    known = np.isfinite(gas.decay_exponent)
-    found = over_seeds(gas, gas.decay_exponent.where(known), "decay_exponent")
-    lossless = np.abs(found.places["beta"]) == 1.0
+    is_known = np.isfinite(gas.decay_exponent)
+    exponents = over_seeds(gas, gas.decay_exponent.where(is_known), "decay_exponent")
+    lossless = np.abs(exponents.coordinates["beta"]) == 1.0
     for exponent, (source, read, reason) in LAWS.items():
         for index in np.flatnonzero(lossless == (exponent < 2.0)):
             yield Row(
                 quantity="exponent of time in the cooling of viscoelastic disks",
-                at=found.place(index),
+                at=exponents.point_text(index),
                 tier="theory",
                 source=source,
                 read=read,
                 theirs=Estimate(exponent, 0.0),
-                ours=found.at(index),
+                ours=exponents.at(index),
                 corrections="none",
                 reason=reason,
             )

@@ -1,19 +1,20 @@
-"""The wave form in which the floor shakes a bed.
+"""R of a bed by the wave form of its floor.
 
 McNamara & Luding (1998): "changing the wave form does not significantly change R". The residuals
-are those from the sawtooth, not from theory.
+are from the sawtooth, not from theory.
 """
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.plotting import (
-    HALF,
-    LOOKS,
+    LEGEND_AT_HALF,
+    LINE_STYLES,
     TWO_WIDE,
     WIDTH,
     PanelContent,
     Style,
+    judged_title,
     ratio_figure,
     series,
 )
@@ -25,7 +26,7 @@ LABELS = {
     "sine": "sine",
 }
 
-MESSAGE = "The wave form of the floor changes R little"
+DRAWN = "R of a bed by the wave form of its floor"
 
 
 def draw(waves: xr.Dataset) -> Figure:
@@ -33,18 +34,19 @@ def draw(waves: xr.Dataset) -> Figure:
     r, from nearly elastic downwards, and one message for all."""
     restitutions = sorted(waves.r.values, reverse=True)
     first = restitutions[0]
-    parts = [_content(waves, r, MESSAGE if r == first else "") for r in restitutions]
-    figure = ratio_figure(*parts, width=TWO_WIDE if len(parts) > 1 else WIDTH)
-    figure.axes[len(parts)].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
+    message = judged_title(__file__, "wave_form_changes_nothing", [waves], DRAWN)
+    contents = [_content(waves, r, message if r == first else "") for r in restitutions]
+    figure = ratio_figure(*contents, width=TWO_WIDE if len(contents) > 1 else WIDTH)
+    figure.axes[len(contents)].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
     return figure
 
 
 def _content(waves: xr.Dataset, r: float, message: str) -> PanelContent:
-    """Return one panel; its residuals are those from the sawtooth at the same r."""
+    """Return one panel; its residuals are from the sawtooth at the same r."""
     drawn = [
         series(waves, label, look, r=r, wave=wave)
-        for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
+        for (wave, label), look in zip(LABELS.items(), LINE_STYLES, strict=False)
     ]
-    beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    how: Style = {"theory": "Lun's formula", "message": message, "legend": HALF}
-    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, **how)
+    over_sawtooth = [curve._replace(theory=drawn[0].data.R.values) for curve in drawn]
+    style: Style = {"theory": "Lun's formula", "message": message, "legend": LEGEND_AT_HALF}
+    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], over_sawtooth, **style)

@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from roughgas.judging import Finding, NotTestedError, agreement, difference, together
+from roughgas.judging import Finding, NotTestedError, agreement, combined_finding, difference
 
 REFERENCE = "sawtooth"
 
@@ -12,11 +12,11 @@ def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
 
     Waves are compared one by one, since the errors of the sawtooth are common to them.
     """
-    others = [str(wave) for wave in waves.wave.values if wave != REFERENCE]
-    if not others or REFERENCE not in waves.wave:
+    other_waves = [str(wave) for wave in waves.wave.values if wave != REFERENCE]
+    if not other_waves or REFERENCE not in waves.wave:
         raise NotTestedError(f"the sweep does not hold the wave {REFERENCE} and another")
     sawtooth = waves.sel(wave=REFERENCE)
-    return together(
+    return combined_finding(
         (wave, agreement(difference(waves.sel(wave=wave), sawtooth), "R over the sawtooth"))
-        for wave in others
+        for wave in other_waves
     )

@@ -1,4 +1,4 @@
-"""Coverage: its estimators on numbers of known law, and a corner from end to end."""
+"""Coverage: its estimators on data of known law, and a corner from end to end."""
 
 import math
 
@@ -7,16 +7,22 @@ import pytest
 from brute_force import settings
 from schedules import COOLING, STEADY
 from tests.pages import check_study
+from tests.study_modules import module_of_study
 
-from roughgas.accuracy import coverage
-from roughgas.accuracy.coverage import calibrate, one_run, table
 from roughgas.statistics.errors import Estimate
+from roughgas.tasks.running import Experiments
 
-tasks = coverage.tasks
+coverage = module_of_study("coverage", "coverage")
+calibrate, one_run, table, tasks = (
+    coverage.calibrate,
+    coverage.one_run,
+    coverage.table,
+    coverage.tasks,
+)
 
 
 def run(task, settings, experiments, progress=lambda done, total: None):
-    return coverage.run(task, settings, experiments, progress)
+    return coverage.run(task, settings, Experiments(experiments), progress)
 
 
 DOF = 8
@@ -37,7 +43,8 @@ SETTINGS = {
 
 
 def honest(rng, runs, excess=1.0, bias=0.0):
-    """Runs of unit scatter whose errors, known with DOF degrees of freedom, are `excess` as big."""
+    """Return runs of unit scatter whose errors, with DOF degrees of freedom, are `excess` times too
+    large."""
     stderr = excess * np.sqrt(rng.chisquare(DOF, runs) / DOF)
     return Estimate(rng.standard_normal(runs) + bias, stderr, np.full(runs, float(DOF)))
 
@@ -49,27 +56,29 @@ def calibrated(runs, seed=0):
 @pytest.mark.slow
 def test_honest_runs_are_found_honest():
     """At 4 sigma, 10 numbers: by chance once in 1600."""
-    found = calibrated(honest(np.random.default_rng(1), 2000))
-    off = found["coverage"].value - [0.68, 0.95]
-    assert np.all(np.abs(off) < 4 * found["coverage"].stderr + 0.004)  # of the quantile
-    assert abs(found["bias"].value) < 4 * found["bias"].stderr
-    assert abs(found["stated_over_true"].value - 1) < 4 * found["stated_over_true"].stderr
+    calibration = calibrated(honest(np.random.default_rng(1), 2000))
+    off = calibration["coverage"].value - [0.68, 0.95]
+    assert np.all(np.abs(off) < 4 * calibration["coverage"].stderr + 0.004)  # of the quantile
+    assert abs(calibration["bias"].value) < 4 * calibration["bias"].stderr
+    assert (
+        abs(calibration["stated_over_true"].value - 1) < 4 * calibration["stated_over_true"].stderr
+    )
 
 
 def test_errors_that_are_too_small_and_a_bias_are_found():
-    found = calibrated(honest(np.random.default_rng(2), 1000, excess=0.7, bias=0.3))
-    assert found["stated_over_true"].value == pytest.approx(0.7, abs=0.06)
-    assert found["bias"].value == pytest.approx(0.3, abs=0.13)
-    assert np.all(found["coverage"].value[:, 1] < 0.90)
+    calibration = calibrated(honest(np.random.default_rng(2), 1000, excess=0.7, bias=0.3))
+    assert calibration["stated_over_true"].value == pytest.approx(0.7, abs=0.06)
+    assert calibration["bias"].value == pytest.approx(0.3, abs=0.13)
+    assert np.all(calibration["coverage"].value[:, 1] < 0.90)
 
 
 @pytest.mark.slow
-def test_the_errors_of_the_coverage_are_those_seen_over_many_studies():
-    """60 studies: each of four scatters is known to 9 %; at 4 sigma by chance once in 4000."""
+def test_errors_of_the_coverage_match_its_scatter():
+    """60 studies: each of four scatters has an error of 9 %; at 4 sigma by chance once in 4000."""
     studies = [calibrated(honest(np.random.default_rng((3, k)), 100), k) for k in range(60)]
-    seen = np.std([one["coverage"].value for one in studies], axis=0, ddof=1)
-    stated = np.sqrt(np.mean(np.square([one["coverage"].stderr for one in studies]), axis=0))
-    assert np.all(np.abs(seen / stated - 1) < 0.36)
+    scatter = np.std([study["coverage"].value for study in studies], axis=0, ddof=1)
+    stated = np.sqrt(np.mean(np.square([study["coverage"].stderr for study in studies]), axis=0))
+    assert np.all(np.abs(scatter / stated - 1) < 0.36)
 
 
 def test_runs_that_state_no_error_hold_no_truth():
@@ -80,12 +89,12 @@ def test_runs_that_state_no_error_hold_no_truth():
 
 
 @pytest.fixture(scope="module")
-def parts():
+def task_results():
     return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
 
 
-def test_every_corner_has_its_runs_and_its_truth(parts):
-    data = coverage.combine(parts, SETTINGS)
+def test_every_corner_has_its_runs_and_its_truth(task_results):
+    data = coverage.combine(task_results, SETTINGS)
     assert list(data.corner.values) == ["bed_r0.9_beta-0.5", "gas_r0.9_beta0"]
     assert np.all(data.repetitions == 8)
     assert np.all((data.coverage >= 0) & (data.coverage <= 1))
@@ -96,9 +105,9 @@ def test_every_corner_has_its_runs_and_its_truth(parts):
     assert float(row[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)
 
 
-def test_the_truth_is_measured_for_longer_and_from_other_seeds(parts):
-    for part in parts.values():
-        assert not np.isin(part.truth_R, part.R).any()
-        assert len(np.unique(part.R)) == part.sizes["run"]
-    bed = parts["bed_r0.9_beta-0.5"]
+def test_the_truth_is_measured_for_longer_and_from_other_seeds(task_results):
+    for corner in task_results.values():
+        assert not np.isin(corner.truth_R, corner.R).any()
+        assert len(np.unique(corner.R)) == corner.sizes["run"]
+    bed = task_results["bed_r0.9_beta-0.5"]
     assert bed.truth_R_stderr.max() < bed.R_stderr.mean()

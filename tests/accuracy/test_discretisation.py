@@ -1,15 +1,17 @@
-"""The part `discretisation`: its jobs, at tiny settings, and the fits, on data that are known."""
+"""The module `discretisation`: its jobs, at tiny settings, and the fits, on data of known law."""
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from tests.pages import check_study
+from tests.study_modules import module_of_study
 
-from roughgas.accuracy import discretisation
-from roughgas.accuracy.discretisation import slowdown, statistical_error
-from roughgas.accuracy.figures import draw_discretisation as draw
 from roughgas.statistics.fits import PowerLaw
+from roughgas.tasks.running import Experiments
 
+discretisation = module_of_study("accuracy", "discretisation")
+slowdown, statistical_error = discretisation.slowdown, discretisation.statistical_error
+draw = module_of_study("accuracy", "figure").draw_discretisation
 SETTINGS = {
     "seed": 3,
     "r": 0.9,
@@ -30,35 +32,36 @@ T = np.array([0.05, 0.02, 0.01, 0.005])
 
 def run(task, settings=SETTINGS):
     calls = []
-    found = discretisation.run(task, settings, {"cooling": COOLING}, lambda *a: calls.append(a))
+    experiments = Experiments({"cooling": COOLING})
+    result = discretisation.run(task, settings, experiments, lambda *a: calls.append(a))
     assert calls and all(0 <= done < total for done, total in calls)
-    return found
+    return result
 
 
 @pytest.fixture(scope="module")
-def parts():
+def task_results():
     return {task: run(task) for task in discretisation.tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
-def group(parts):
-    return discretisation.combine(parts, SETTINGS)
+def group(task_results):
+    return discretisation.combine(task_results, SETTINGS)
 
 
 @pytest.mark.slow  # compiles two kernels
-def test_what_the_jobs_measure(parts):
-    for task, found in parts.items():
-        assert 0.15 < found.R < 0.4 and 0.0 < found.R_stderr < 0.05, task
-        assert found.cpu_seconds > 0.0, task
-    assert parts["event"].R.item() == parts["event"].R_series.values.mean()
-    assert parts["soft-5-0"].collisions == pytest.approx(600, rel=0.2)
-    assert parts["soft-10-1"].steps == pytest.approx(600 * 10 / 0.05, rel=0.02)
-    assert parts["model-0"].touched < 0.1 < 0.5 < parts["model-1"].touched
+def test_values_from_the_jobs(task_results):
+    for task, result in task_results.items():
+        assert 0.15 < result.R < 0.4 and 0.0 < result.R_stderr < 0.05, task
+        assert result.cpu_seconds > 0.0, task
+    assert task_results["event"].R.item() == task_results["event"].R_series.values.mean()
+    assert task_results["soft-5-0"].collisions == pytest.approx(600, rel=0.2)
+    assert task_results["soft-10-1"].steps == pytest.approx(600 * 10 / 0.05, rel=0.02)
+    assert task_results["model-0"].touched < 0.1 < 0.5 < task_results["model-1"].touched
 
 
 @pytest.mark.slow
-def test_jobs_are_independent(parts):
-    values = [found.R.item() for found in parts.values()]
+def test_jobs_are_independent(task_results):
+    values = [result.R.item() for result in task_results.values()]
     assert len(set(values)) == len(values)
 
 
@@ -73,7 +76,7 @@ def test_everything_in_the_group_is_described(group):
     assert np.all(np.isfinite(group.soft_matched_seconds))
 
 
-def test_the_error_of_parts_of_white_noise():
+def test_the_error_of_blocks_of_white_noise():
     """sigma/sqrt(n), within 3.5 of its errors."""
     series = 0.3 + 0.03 * np.random.default_rng(3).standard_normal(20000)
     lengths, (errors, spread, _) = statistical_error(series, 0.3)
@@ -81,10 +84,10 @@ def test_the_error_of_parts_of_white_noise():
     assert np.all(np.abs(errors - 0.03 / np.sqrt(lengths)) < 3.5 * spread)
 
 
-def test_how_much_slower_in_closed_form():
+def test_slowdown_in_closed_form():
     """Deviation A t and cost c/t: the least of c/[t (1 - (A t/e)^2)] is 3 sqrt(3)/2 A c/e."""
     A, c, events = 1.5, 2e-6, 5e-5
     for target in (0.03, 0.01, 0.003):
         expected = 1.5 * np.sqrt(3.0) * A * c / target / events
-        found = slowdown(target, T, c / T, PowerLaw(1.0, 0.0, -A, 1.0), events)
-        assert found == pytest.approx(expected, rel=1e-3)
+        ratio = slowdown(target, T, c / T, PowerLaw(1.0, 0.0, -A, 1.0), events)
+        assert ratio == pytest.approx(expected, rel=1e-3)

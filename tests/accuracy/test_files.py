@@ -4,50 +4,60 @@ import pytest
 import xarray as xr
 from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 from tests.entry import main
+from tests.study_modules import ROOT, module_of_study
 
-from roughgas import config
-from roughgas.accuracy import coverage
-from roughgas.accuracy.running import combine, read_studies, write_tables
-from roughgas.base import InputError
+from roughgas.base import InputError, sorted_json
+from roughgas.data.netcdf import read_groups
+from roughgas.tasks.running import combine
+
+FOLDER = str(ROOT / "studies" / "coverage")
+MODULE = {"modules": ["coverage"]}
 
 
 @pytest.fixture(scope="module")
 def tasks(tmp_path_factory):
-    """The files of a study's tasks, made by the command."""
+    """The files of a study's tasks, written by the command."""
     folder, text = tmp_path_factory.mktemp("tasks"), settings()
-    names = coverage.tasks(SETTINGS)
+    names = module_of_study("coverage", "coverage").tasks(SETTINGS)
     for name in names:
-        command = ["accuracy_task", "coverage", name, "--settings", text]
+        command = ["task", FOLDER, name, "--module", "coverage", "--settings", text]
         assert main([*command, "-o", str(folder / f"{name}.nc")]) == 0
     return [folder / f"{name}.nc" for name in names]
 
 
-def settings(**others):
-    return config.as_text({"study": SETTINGS | others, "experiments": EXPERIMENTS})
+def settings(**changes):
+    return sorted_json({"study": SETTINGS | changes, "experiments": EXPERIMENTS})
 
 
 def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
     combined, table, figure = (tmp_path / name for name in ("all.nc", "all.md", "all.png"))
-    assert main(["accuracy_data", *map(str, tasks), "-o", str(combined)]) == 0
-    data = read_studies(combined)["coverage"]
+    options = ["--modules", "coverage", "-o", str(combined), "--table", str(table)]
+    assert main(["combine", FOLDER, *map(str, tasks), *options]) == 0
+    data = read_groups(combined)["coverage"]
     assert data.sizes["corner"] == len(tasks) and data.attrs["scale"] == "paper"
     for name in data.data_vars:
         words = data[name].dtype.kind in "OU"
         assert "long_name" in data[name].attrs and words != ("units" in data[name].attrs), name
-    write_tables(combined, output=table)
     assert table.read_text().startswith("## Coverage of the stated intervals\n")
-    assert main(["accuracy_figure", "coverage", str(combined), "-o", str(figure)]) == 0
+    options = ["--shows", "coverage", "-o", str(figure)]
+    assert main(["figure", FOLDER, "coverage", str(combined), *options]) == 0
     assert figure.stat().st_size > 10_000
 
 
 def test_a_missing_task_is_named(tasks, tmp_path):
     with pytest.raises(InputError, match=r"tasks of coverage = without gas_r0\.9_beta0: must be"):
-        combine(tasks[:1], output=tmp_path / "all.nc")
+        combine(FOLDER, tasks[:1], **MODULE, output=tmp_path / "all.nc", table=tmp_path / "all.md")
 
 
 def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
-    other = xr.load_dataset(tasks[0])
-    other.attrs["settings_json"] = settings(repetitions=9)
-    other.to_netcdf(tmp_path / "other.nc")
+    changed = xr.load_dataset(tasks[0])
+    changed.attrs["settings_json"] = settings(repetitions=9)
+    changed.to_netcdf(tmp_path / "other.nc")
     with pytest.raises(InputError, match="settings of coverage = 2 different ones: must be the s"):
-        combine([tmp_path / "other.nc", tasks[1]], output=tmp_path / "all.nc")
+        combine(
+            FOLDER,
+            [tmp_path / "other.nc", tasks[1]],
+            **MODULE,
+            output=tmp_path / "all.nc",
+            table=tmp_path / "all.md",
+        )

@@ -1,28 +1,30 @@
-"""The part `models` of the accuracy studies: its solvers, error bars, and all of it in small."""
+"""The module `models` of the accuracy studies: its solvers, error bars, and all of it in small."""
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from raw import FreeCooling
+from schedules import COOLING
 from tests.pages import check_study
+from tests.study_modules import module_of_study
 
 from roughgas import theory
-from roughgas.accuracy import figures as plotting
-from roughgas.accuracy import models
-from roughgas.accuracy.models import METHODS, error_bar
-from roughgas.tasks.free_cooling import FreeCooling, integrate
+from roughgas.tasks.free_cooling import integrate
+from roughgas.tasks.running import Experiments
 
-tasks = models.tasks
+models, plotting = module_of_study("accuracy", "models"), module_of_study("accuracy", "figure")
+METHODS, error_bar, tasks = models.METHODS, models.error_bar, models.tasks
 
 
 def run(task, settings, experiments, progress=lambda done, total: None):
-    return models.run(task, settings, experiments, progress)
+    return models.run(task, settings, Experiments(experiments), progress)
 
 
 EXPERIMENT = {
     "particles": 40,
     "box": [50, 50],
     "effects": {"spin": {"inertia": 0.5}, "contact_time": {"duration": 1e-4, "below_r": 0.75}},
-    "schedule": {"thermalise": 5},
+    "schedule": COOLING | {"thermalise": 5},
 }
 SETTINGS = {
     "seed": 1,
@@ -45,19 +47,19 @@ SETTINGS = {
 
 
 @pytest.fixture(scope="module")
-def parts():
+def task_results():
     experiments = {"cooling": EXPERIMENT}
     return {task: run(task, SETTINGS, experiments) for task in tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
-def data(parts):
-    return models.combine(parts, SETTINGS)
+def data(task_results):
+    return models.combine(task_results, SETTINGS)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("duration", [0.05, 3.0, 40.0])
-def test_the_integrated_rate_equations_are_those_that_are_solved_exactly(dimension, duration):
+def test_integrated_rate_equations_agree_with_the_exact_solution(dimension, duration):
     r, beta, theta = 0.7, 0.2, 0.3
     exact = theory.relax(theta, r, beta, duration, dimension)
     T_tr, T_rot = integrate(theta, duration, 0.1, r, beta, dimension)
@@ -67,13 +69,13 @@ def test_the_integrated_rate_equations_are_those_that_are_solved_exactly(dimensi
 
 def test_a_box_is_scaled_to_the_packing():
     moved = FreeCooling(EXPERIMENT, 0.8, 0.0).at_packing(0.01)
-    assert 40 * np.pi / np.prod(moved.experiment["box"]) == pytest.approx(0.01)
+    assert 40 * np.pi / np.prod(moved.experiment.box) == pytest.approx(0.01)
     assert EXPERIMENT["box"] == [50, 50]
 
 
 def test_error_bars_are_the_scatter_of_rms_errors():
-    """Over 4000 repetitions the scatter of an rms is known to 1.1 %, the Gaussian formula for 16
-    groups is good to some per cent."""
+    """Over 4000 repetitions the scatter of an rms has an error of 1.1 %; the Gaussian formula for
+    16 groups is good to some per cent."""
     rng = np.random.default_rng(1)
     for offset, common in ((0.0, 0.0), (3.0, 0.0), (3.0, 0.5)):
         shift = offset + common * rng.standard_normal((4000, 1))
@@ -82,41 +84,41 @@ def test_error_bars_are_the_scatter_of_rms_errors():
         assert np.median(error_bar(errors, common)) == pytest.approx(observed, rel=0.07)
 
 
-def test_jobs_draw_from_streams_of_their_own(parts):
-    """No replica of the reference is in another one, or in a point that is compared with it."""
-    R = np.concatenate([parts[f"reference-{k}"].R for k in range(2)])
+def test_jobs_draw_from_streams_of_their_own(task_results):
+    """No replica of the reference occurs in another job, or in a point that is compared with it."""
+    R = np.concatenate([task_results[f"reference-{k}"].R for k in range(2)])
     assert len(R) == 20
-    drawn = np.concatenate([R, parts["event_driven"].R.values.ravel()])
+    drawn = np.concatenate([R, task_results["event_driven"].R.values.ravel()])
     assert len(set(drawn)) == len(drawn)
 
 
-def test_every_variable_says_what_it_is(data):
+def test_every_variable_is_described(data):
     for name in data.variables:
         assert data[name].attrs["long_name"] and data[name].attrs["units"], name
     assert data.attrs["seed"] == 1
     check_study("models", data)
-    one, other = Figure().subplots(1, 2)
-    plotting.draw_models(one, data)
-    plotting.draw_map(other, data)
-    curve = next(c for c in other.containers if c.get_label() == "$r = 0.6$")
+    left, right = Figure().subplots(1, 2)
+    plotting.draw_models(left, data)
+    plotting.draw_map(right, data)
+    curve = next(c for c in right.containers if c.get_label() == "$r = 0.6$")
     assert np.array_equal(curve.lines[0].get_ydata(), 100 * data.map_gap.sel(map_r=0.6))
 
 
-def test_results_are_what_they_are_made_of(parts, data):
-    reference = np.concatenate([parts[f"reference-{k}"].R for k in range(2)]).mean()
+def test_results_follow_from_the_tasks(task_results, data):
+    reference = np.concatenate([task_results[f"reference-{k}"].R for k in range(2)]).mean()
     assert float(data.R_reference) == pytest.approx(reference)
     assert float(data.closed_form_R) == pytest.approx(theory.cooling_ratio(0.8, 0.0))
     # rate equations end at the theory of free cooling
     assert data.rate_equations_R.values[-1] == pytest.approx(float(data.closed_form_R), rel=1e-4)
-    first = parts["event_driven"].R.values[0] / reference - 1
+    first = task_results["event_driven"].R.values[0] / reference - 1
     assert data.event_driven_error.values[0] == pytest.approx(np.sqrt(np.mean(first**2)))
     factors = [1 + float(data[name]) for name in ("of_maxwellian", "of_number", "of_dilution")]
     assert np.prod(factors) == pytest.approx(float(data.closed_form_R) / reference)
     assert data.map_gap.sel(map_r=0.6, map_beta=1.0) == pytest.approx(
-        parts["map-r0.6"].R.values[1] / theory.cooling_ratio(0.6, 1.0) - 1
+        task_results["map-r0.6"].R.values[1] / theory.cooling_ratio(0.6, 1.0) - 1
     )
-    part = parts["density-r0.8-beta-0.3"]
-    corrected = part.R.values.mean(axis=1) * float(part.R_many / part.R_few)
+    density = task_results["density-r0.8-beta-0.3"]
+    corrected = density.R.values.mean(axis=1) * float(density.R_many / density.R_few)
     assert data.density_gap.values[0] == pytest.approx(
         corrected / theory.cooling_ratio(0.8, -0.3) - 1
     )
@@ -124,8 +126,8 @@ def test_results_are_what_they_are_made_of(parts, data):
 
 def test_everything_has_an_error_bar_and_takes_time(data):
     for method in METHODS:
-        for of in ("error", "error_stderr", "seconds"):
-            values = data[f"{method}_{of}"].values
-            assert np.all(np.isfinite(values)) and np.all(values > 0), (method, of)
+        for quantity in ("error", "error_stderr", "seconds"):
+            values = data[f"{method}_{quantity}"].values
+            assert np.all(np.isfinite(values)) and np.all(values > 0), (method, quantity)
     assert np.all(data.map_gap_stderr > 0) and np.all(data.density_gap_stderr > 0)
     assert 0 < data.closed_form_seconds < data.event_driven_seconds[0]

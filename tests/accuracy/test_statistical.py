@@ -1,4 +1,4 @@
-"""The statistical error: its fits on numbers of known law, and a tiny study from end to end."""
+"""The statistical error: its fits on data of known law, and a tiny study from end to end."""
 
 import math
 
@@ -6,18 +6,22 @@ import numpy as np
 import pytest
 from brute_force import settings
 from matplotlib.figure import Figure
+from raw import typed
 from schedules import COOLING, STEADY
 from tests.pages import check_study
+from tests.study_modules import module_of_study
 
-from roughgas.accuracy import statistical
-from roughgas.accuracy.figures import draw_statistical as draw
-from roughgas.accuracy.statistical import SCENES, WAYS, Chain, noise, observed, time_from_blocks
+from roughgas.tasks.running import Experiments
 
-tasks = statistical.tasks
+statistical = module_of_study("accuracy", "statistical")
+Chain, SCENES, WAYS = statistical.Chain, statistical.SCENES, statistical.WAYS
+noise, observed, tasks = statistical.noise, statistical.observed, statistical.tasks
+time_from_blocks = statistical.time_from_blocks
+draw = module_of_study("accuracy", "figure").draw_statistical
 
 
 def run(task, settings, experiments, progress=lambda done, total: None):
-    return statistical.run(task, settings, experiments, progress)
+    return statistical.run(task, settings, Experiments(experiments), progress)
 
 
 SETTINGS = {
@@ -43,7 +47,7 @@ LENGTHS = 2.0 ** np.arange(8)
 
 
 def estimates(rng, exponent=-0.5, groups=32):
-    """Normal estimates around 0.3 of error 0.02 LENGTHS^exponent."""
+    """Return normal estimates around 0.3 of error 0.02 LENGTHS^exponent."""
     return 0.3 + 0.02 * LENGTHS[:, None] ** exponent * rng.standard_normal((8, groups))
 
 
@@ -62,11 +66,11 @@ def test_observed_errors_and_the_noise_behind_them():
     """256 estimates: 4.4 % for the errors; 3.1 % for the noise; at 4 sigma."""
     R = estimates(np.random.default_rng(2), groups=256)
     seconds = np.broadcast_to(LENGTHS[:, None], R.shape)
-    found = observed(R, seconds, 0.3)
-    error, stderr, _ = found["error"]
+    levels = observed(R, seconds, 0.3)
+    error, stderr, _ = levels["error"]
     np.testing.assert_allclose(error, 0.02 * LENGTHS**-0.5, rtol=0.18)
     np.testing.assert_allclose(stderr, error / math.sqrt(512))
-    mean, stderr, _ = noise(error, found["groups"], LENGTHS)
+    mean, stderr, _ = noise(error, levels["groups"], LENGTHS)
     assert abs(mean - 0.02**2) < 4 * stderr
     assert stderr == pytest.approx(mean * math.sqrt(2 / 2048))
 
@@ -81,7 +85,8 @@ def test_missing_groups_do_not_count():
 
 
 def test_autocorrelation_time_from_blocks():
-    """Moving averages over 5 samples have exactly 5, seen to 2.2 % (10 000 blocks), less 2 %."""
+    """Moving averages over 5 samples have exactly 5, estimated to 2.2 % (10 000 blocks), less 2
+    %."""
     white = np.random.default_rng(5).standard_normal(500_004)
     series = np.convolve(white, np.full(5, 0.2), mode="valid")
     assert time_from_blocks(series, 50) == pytest.approx(5 * 0.98, rel=0.06)
@@ -89,12 +94,12 @@ def test_autocorrelation_time_from_blocks():
 
 
 @pytest.fixture(scope="module")
-def parts():
+def task_results():
     return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
 
 
-def test_a_study_from_end_to_end(parts):
-    data = statistical.combine(parts, SETTINGS)
+def test_a_study_from_end_to_end(task_results):
+    data = statistical.combine(task_results, SETTINGS)
     np.testing.assert_array_equal(data.seeds.sel(way="seeds", scene="sheared"), [1, 2, 4])
     np.testing.assert_array_equal(data.length.sel(way="length", scene="sheared"), [40, 80, 160])
     assert np.all(data.groups >= SETTINGS["groups"])
@@ -113,17 +118,20 @@ def test_a_study_from_end_to_end(parts):
     assert any(np.array_equal(points, expected) for points in shown)
 
 
-def test_no_estimate_is_used_twice_and_none_is_the_references(parts):
+def test_estimates_and_references_share_no_run(task_results):
     for scene in SCENES:
-        R = np.concatenate([parts[f"{scene}-{way}"].R.values.ravel() for way in WAYS])
+        R = np.concatenate([task_results[f"{scene}-{way}"].R.values.ravel() for way in WAYS])
         R = R[np.isfinite(R)]
         assert len(np.unique(R)) == len(R)
-        assert not np.isin(parts[f"{scene}-reference"].R, R).any()
+        assert not np.isin(task_results[f"{scene}-reference"].R, R).any()
 
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_segments_continue_one_another(scene):
-    """Two of them are one of their joint length: in a cooling gas up to a new unit of velocity."""
-    chains = [Chain(EXPERIMENTS[scene], 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)]
+    """Two segments equal a single run of their joint length: in a cooling gas up to a new unit of
+    velocity."""
+    chains = [
+        Chain(typed(EXPERIMENTS[scene]), 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)
+    ]
     halves = np.concatenate([chains[0].measure(8) for _ in range(2)])
     np.testing.assert_array_equal(chains[1].measure(16), halves)

@@ -1,4 +1,4 @@
-"""Sources, errors, formats and legal values."""
+"""Hashes of sources, suggestions, formats and intervals of roughgas.base."""
 
 import json
 import math
@@ -8,24 +8,26 @@ import sys
 import numpy as np
 import pytest
 
-from roughgas.base import InputError, Interval, as_json, files, markdown, not_one_of
+from roughgas.base import InputError, Interval, as_json, files, markdown, unknown_name_error
 
 
 @pytest.mark.parametrize(
     ("name", "guess"),
     [("'coolng'", "cooling"), ("'schedul'", "schedule"), ("fig9", None), (7, None)],
 )
-def test_a_guess_is_made_where_a_name_is_close(name, guess):
-    text = str(not_one_of("key", name, ["cooling", "schedule", "fig8"]))
+def test_the_closest_name_is_suggested(name, guess):
+    text = str(unknown_name_error("key", name, ["cooling", "schedule", "fig8"]))
     assert text.startswith(f"key = {name}: must be one of cooling, schedule, fig8")
     assert text.endswith(f"; did you mean {guess}?" if guess else "fig8")
 
 
 @pytest.fixture
 def package(tmp_path, monkeypatch):
-    """A package of four modules, of which the first imports the second in a function."""
+    """A package of four modules, the first with an import of the second inside a function."""
     monkeypatch.setattr(files, "PACKAGE", tmp_path)
-    monkeypatch.setattr(files, "_read", files._read.__wrapped__)  # which is cached
+    monkeypatch.setattr(
+        files, "_digest_and_imports", files._digest_and_imports.__wrapped__
+    )  # without the cache
     (tmp_path / "room").mkdir()
     modules = {
         "first": "def f():\n    import roughgas.room.second\n",
@@ -39,17 +41,17 @@ def package(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_what_is_imported_anywhere_counts_with_the_packages_around(package):
-    assert files.closure("first") == {"first", "room", "room.second"}
-    assert files.closure("typed") == {"typed", "room"}
+def test_the_closure_has_all_imports_and_their_packages(package):
+    assert files.import_closure("first") == {"first", "room", "room.second"}
+    assert files.import_closure("typed") == {"typed", "room"}
     (package / "room" / "__init__.py").write_text("def f():\n    import roughgas.first\n")
-    assert files.closure("room.second") == {"room", "room.second"}
-    assert files.closure("room") == {"room", "first", "room.second"}
+    assert files.import_closure("room.second") == {"room", "room.second"}
+    assert files.import_closure("room") == {"room", "first", "room.second"}
     with pytest.raises(FileNotFoundError):
-        files.closure("third")
+        files.import_closure("third")
 
 
-def test_what_a_module_says_and_the_versions_count(package, monkeypatch):
+def test_code_hashes_depend_on_source_and_versions(package, monkeypatch):
     (package / "edited.py").write_text("def f():\n    return 1\n")
     hashes = [files.code_of("first", alone=["edited"])]
     (package / "edited.py").write_text("def f():\n    return 1  # a comment\n")
@@ -61,17 +63,17 @@ def test_what_a_module_says_and_the_versions_count(package, monkeypatch):
     assert len(set(hashes)) == 4 and hashes[-1] == files.code_of("first", alone=["edited"])
 
 
-def test_every_module_that_a_point_imports_counts():
-    """Found out by importing, where `closure` reads the sources."""
+def test_the_closure_has_every_module_that_a_point_imports():
+    """The modules in sys.modules after the import, while `import_closure` parses the sources."""
     modules = ("roughgas.simulation.point", "roughgas.data.point")
     script = f"import sys, {', '.join(modules)}; print(*sys.modules)"
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
-    imported = {name for name in done.stdout.split() if name.startswith("roughgas.")}
+    imported = {name for name in process.stdout.split() if name.startswith("roughgas.")}
     names = {name.removeprefix("roughgas.") for name in imported}
     assert len(names) > 10
-    assert names <= files.closure("simulation.point", "data.point")
+    assert names <= files.import_closure("simulation.point", "data.point")
 
 
 def test_markdown_has_a_rule_below_its_head():
@@ -101,11 +103,11 @@ def test_json_is_strict():
         ("[0, inf]", (0, math.inf), (-1, math.nan)),
     ],
 )
-def test_interval(interval, inside, outside):
-    checked = Interval(interval)
-    assert [checked.check("key", value) for value in inside] == list(inside)
+def test_intervals_check_their_bounds(interval, inside, outside):
+    legal_interval = Interval(interval)
+    assert [legal_interval.check("key", value) for value in inside] == list(inside)
     for value in outside:
-        with pytest.raises(InputError) as refused:
-            checked.check("key", value)
-        assert str(refused.value).endswith(f"must lie in {interval}")
-    assert checked.holds(np.array([*inside, *outside])).sum() == len(inside)
+        with pytest.raises(InputError) as refusal:
+            legal_interval.check("key", value)
+        assert str(refusal.value).endswith(f"must lie in {interval}")
+    assert legal_interval.holds(np.array([*inside, *outside])).sum() == len(inside)

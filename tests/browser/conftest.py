@@ -1,4 +1,4 @@
-"""A small run with its pages, and a browser that says what it complained of and asked for."""
+"""A small finished run with its pages, and a browser that records console messages and requests."""
 
 import json
 import time
@@ -7,7 +7,7 @@ from importlib.util import find_spec
 import pytest
 from project import Project
 
-# which `make extras` installs, and `make test` does without
+# `make extras` installs selenium; `make test` skips these tests without it
 collect_ignore_glob = [] if find_spec("selenium") else ["test_*.py"]
 
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
@@ -27,13 +27,13 @@ class Browser:
         self.driver = driver
 
     def open(self, path, fragment=""):
-        """Load a file; whatever was complained of or asked for before is forgotten."""
+        """Load a file, and clear the records of console messages and requests."""
         self.driver.get("about:blank")
         self.complaints(), self.requests()
         self.driver.get(f"{path.as_uri()}{fragment}")
 
     def find(self, selector):
-        """The elements that match a CSS selector."""
+        """Return the elements that match a CSS selector."""
         return self.driver.find_elements("css selector", selector)
 
     def text(self, selector):
@@ -44,24 +44,28 @@ class Browser:
         return self.driver.execute_script(source, *arguments)
 
     def wait(self, condition):
-        """What `condition` gives, as soon as it is true; an error after SECONDS."""
+        """Return the result of `condition` as soon as it is true; fail after SECONDS."""
         deadline = time.monotonic() + SECONDS
-        while not (found := condition()):
+        while not (result := condition()):
             assert time.monotonic() < deadline
             time.sleep(0.05)
-        return found
+        return result
 
     def complaints(self):
-        """Warnings and errors in the console since the last call."""
+        """Return the warnings and errors in the console since the last call."""
         log = self.driver.get_log("browser")
         return [entry["message"] for entry in log if entry["level"] in ("WARNING", "SEVERE")]
 
     def requests(self):
-        """The addresses asked for since the last call that are not in the file itself."""
-        log = [json.loads(one["message"])["message"] for one in self.driver.get_log("performance")]
-        sent = [one["params"] for one in log if one["method"] == "Network.requestWillBeSent"]
-        asked = [one["request"]["url"] for one in sent]
-        return [url for url in asked if not url.startswith(LOCAL)]
+        """Return the addresses requested since the last call, except for those in the file."""
+        log = [
+            json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")
+        ]
+        parameters = [
+            entry["params"] for entry in log if entry["method"] == "Network.requestWillBeSent"
+        ]
+        urls = [entry["request"]["url"] for entry in parameters]
+        return [url for url in urls if not url.startswith(LOCAL)]
 
 
 @pytest.fixture(scope="session")
@@ -79,7 +83,7 @@ def browser(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def ran(tmp_path_factory):
+def finished_run(tmp_path_factory):
     """A project with a finished run at a tiny scale, two r and three beta, and its report."""
     project = Project(tmp_path_factory.mktemp("browsed"))
 

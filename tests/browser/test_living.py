@@ -1,4 +1,4 @@
-"""The living page in a real browser: its dynamics against the kernel's, and what a person does."""
+"""The living page in a real browser: its dynamics, compared with the kernel, and its controls."""
 
 import functools
 import math
@@ -6,37 +6,45 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from raw import build, measured, protocols, typed
 
 from roughgas import config, theory
 from roughgas.kernel.state import EXPONENT, LAST_FIRST, LAST_SECOND
-from roughgas.scene import build
-from roughgas.show.living import settings, write_living
-from roughgas.simulation import schedule
-from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.restart import in_order, positions_and_velocities
+from roughgas.show.living import experiment_of, write_living
+from roughgas.simulation.free_flight import in_starting_order, positions_and_velocities
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 CONFIGURATION = functools.cache(lambda: config.load("config.yaml"))
 PERIODS = {"vibrated": 30.0, "sheared": 50.0}
-"""Whole periods of the drive, in T, after which the kernel hands its gas over."""
+"""Whole periods of the drive, in T, after which the page continues the kernel's gas."""
 COLLISIONS = 60
-SHORT = {
+SHORT_SCHEDULES = {
     "vibrated": {"equilibrate": 150, "measure": 600},
     "sheared": {"equilibrate": 600, "measure": 4000},
     "cooling": {"replicas": 16, "relaxation_times": 8, "plateau": 60},
 }
-POINTS = [("vibrated", 0.9, 0.5), ("vibrated", 0.8, -0.5), ("sheared", 0.9, 0.0)]
-POINTS += [("sheared", 0.8, 0.8), ("cooling", 0.9, 0.5), ("cooling", 0.8, -0.5)]
-CHANGED = [("cooling", {"q": 1}), ("cooling", {"mu": 0.3}), ("vibrated", {"q": 0.1, "mu": 0.05})]
+MEASURED_POINTS = [("vibrated", 0.9, 0.5), ("vibrated", 0.8, -0.5), ("sheared", 0.9, 0.0)]
+MEASURED_POINTS += [("sheared", 0.8, 0.8), ("cooling", 0.9, 0.5), ("cooling", 0.8, -0.5)]
+CHANGED_MATERIALS = [
+    ("cooling", {"q": 1}),
+    ("cooling", {"mu": 0.3}),
+    ("vibrated", {"q": 0.1, "mu": 0.05}),
+]
 """Other moments of inertia, and Coulomb friction so weak that contacts slide."""
-LONG = [("cooling", {"r": 0.9, "beta": 0.5}, 2000), ("cooling", {"r": 0.8, "beta": -0.8}, 2000)]
-LONG += [("sheared", {"r": 0.9, "beta": 0.5}, 2000), ("vibrated", {"r": 0.9, "beta": 0.0}, 2000)]
-LONG += [("cooling", {"r": 0.95, "beta": 0.0, "mu": 0.5}, 300)]
-LONG += [("sheared", {"r": 0.9, "beta": -0.5, "q": 1, "mu": 0.2}, 300)]
-LONG += [("vibrated", {"r": 0.6, "beta": 1.0, "q": 0.1}, 300)]
+LONG_RUNS = [
+    ("cooling", {"r": 0.9, "beta": 0.5}, 2000),
+    ("cooling", {"r": 0.8, "beta": -0.8}, 2000),
+]
+LONG_RUNS += [
+    ("sheared", {"r": 0.9, "beta": 0.5}, 2000),
+    ("vibrated", {"r": 0.9, "beta": 0.0}, 2000),
+]
+LONG_RUNS += [("cooling", {"r": 0.95, "beta": 0.0, "mu": 0.5}, 300)]
+LONG_RUNS += [("sheared", {"r": 0.9, "beta": -0.5, "q": 1, "mu": 0.2}, 300)]
+LONG_RUNS += [("vibrated", {"r": 0.6, "beta": 1.0, "q": 0.1}, 300)]
 """Scenes, materials, and collisions per disk."""
-PARTS = 20
+SEGMENTS = 20
 FIRST_COLLISIONS = """
     const [name, material, particles, number] = arguments, found = [];
     const gas = new Gas(SCENES[name], material, particles);
@@ -45,13 +53,13 @@ FIRST_COLLISIONS = """
       found.push([...gas.last, gas.time]);
     }
     return found;"""
-BEGIN = """
+BEGIN_RUN = """
     const [name, material] = arguments;
     window.long = new Run(SCENES[name], material, 5);
     window.missed = [];
     const { gas } = long, double = gas.doubleSpeeds.bind(gas);
     gas.doubleSpeeds = () => { missed.push(Math.abs(gas.imbalance())); double(); };"""
-GO_ON = """
+CONTINUE_RUN = """
     const [more] = arguments, { gas } = long, until = gas.collisions + more * gas.number / 2;
     let sum = 0, samples = 0;
     const { record } = long, add = record.add;
@@ -80,85 +88,87 @@ def page(file, browser):
     assert browser.requests() == []
 
 
-def of_material(name, q=0.5, mu=None):
-    """The page's settings of an experiment with another moment of inertia, or friction."""
-    experiment = settings(CONFIGURATION(), name)
+def with_material(name, q=0.5, mu=None):
+    """Return the page's settings of an experiment, with another moment of inertia, or friction."""
+    experiment = experiment_of(CONFIGURATION(), name).raw
     effects = experiment["effects"] | {"spin": {"inertia": q}}
     return experiment | {"effects": effects | ({"friction": {"mu": mu}} if mu else {})}
 
 
-def kernel_gas(name, r, beta, **others):
-    """A gas of the kernel, its drive at the start of a period, and what the page needs of it."""
-    experiment = of_material(name, **others)
+def kernel_gas(name, r, beta, **material):
+    """Return a gas of the kernel, at the start of a period of the drive, and its particles for the
+    page."""
+    experiment = typed(with_material(name, **material))
     scene = build(experiment, r, beta)
-    gas = schedule.of(experiment).start(scene, experiment, 1)
+    gas = protocols.protocol_of(experiment).start(scene, experiment, 1)
     if name in PERIODS:
         gas.in_time(PERIODS[name], 1)
     position, velocity = positions_and_velocities(gas.state, scene, gas.time)
     spin = gas.state.spin[:, 0]
     columns = [*position.T, *velocity.T, spin]
-    columns = [in_order(gas.state, one).tolist() for one in columns]
+    columns = [in_starting_order(gas.state, column).tolist() for column in columns]
     assert gas.state.counts[EXPONENT] == 0
     return gas, dict(zip(("x", "y", "vx", "vy", "w"), columns, strict=True))
 
 
 @pytest.mark.parametrize(
-    ("name", "r", "beta", "others"),
+    ("name", "r", "beta", "material_changes"),
     [
-        *((*point, {}) for point in [*POINTS, ("vibrated", 0.6, 1.0)]),
-        *((name, 0.9, 0.5, others) for name, others in CHANGED),
+        *((*point, {}) for point in [*MEASURED_POINTS, ("vibrated", 0.6, 1.0)]),
+        *((name, 0.9, 0.5, material_changes) for name, material_changes in CHANGED_MATERIALS),
     ],
 )
-def test_the_first_collisions_are_the_kernels(page, name, r, beta, others):
-    gas, particles = kernel_gas(name, r, beta, **others)
-    material = {"r": r, "beta": beta} | others
-    found = page.script(FIRST_COLLISIONS, name, material, particles, COLLISIONS)
-    begun = gas.time
-    for first, second, time in found:
+def test_the_first_collisions_agree_with_the_kernel(page, name, r, beta, material_changes):
+    gas, particles = kernel_gas(name, r, beta, **material_changes)
+    material = {"r": r, "beta": beta} | material_changes
+    collisions = page.script(FIRST_COLLISIONS, name, material, particles, COLLISIONS)
+    start = gas.time
+    for first, second, time in collisions:
         gas.step(math.inf, 1)
         pair = gas.state.counts[[LAST_FIRST, LAST_SECOND]]
         assert {first, second} == set(pair.tolist())
-        assert time == pytest.approx(gas.time - begun, rel=1e-11, abs=1e-11)
+        assert time == pytest.approx(gas.time - start, rel=1e-11, abs=1e-11)
 
 
-def kernel_R(name, r, beta, **others):
-    """R of the kernel's gas and its standard error, and when the measurement begins."""
-    experiment = of_material(name, **others)
-    plan = experiment["schedule"] | SHORT[name]
-    kind, scene = schedule.of(experiment), build(experiment, r, beta)
-    return kind.run(scene, experiment | {"schedule": plan}, 1, Recorder()), plan
+def kernel_R(name, r, beta, **material):
+    """Return the measurement of R of a gas by the kernel, and its schedule."""
+    experiment = with_material(name, **material)
+    plan = experiment["schedule"] | SHORT_SCHEDULES[name]
+    return measured(experiment | {"schedule": plan}, r, beta), plan
 
 
-@pytest.mark.parametrize(("name", "material", "collisions"), LONG)
-def test_a_gas_obeys_its_laws_as_long_as_a_lecture(page, name, material, collisions):
-    page.script(BEGIN, name, material)
-    parts = []
-    for part in range(1, PARTS + 1):
-        parts.append(page.script(GO_ON, collisions / PARTS))
-        assert parts[-1]["made"] >= collisions * part / PARTS
-        assert parts[-1]["drift"] < 1e-20
-        assert parts[-1]["missed"] < 1e-12
-        assert parts[-1]["gap"] > -1e-9
+@pytest.mark.parametrize(("name", "material", "collisions"), LONG_RUNS)
+def test_conservation_laws_and_R_hold_during_a_lecture(page, name, material, collisions):
+    page.script(BEGIN_RUN, name, material)
+    segments = []
+    for segment in range(1, SEGMENTS + 1):
+        segments.append(page.script(CONTINUE_RUN, collisions / SEGMENTS))
+        assert segments[-1]["made"] >= collisions * segment / SEGMENTS
+        assert segments[-1]["drift"] < 1e-20
+        assert segments[-1]["missed"] < 1e-12
+        assert segments[-1]["gap"] > -1e-9
     if collisions == 2000:
-        R = np.array([part["R"] for part in parts[PARTS // 4 :]])
+        R = np.array([segment["R"] for segment in segments[SEGMENTS // 4 :]])
         error = R.std(ddof=1) / math.sqrt(len(R))
         kernel, _ = kernel_R(name, **material)
-        together = math.hypot(error, kernel["R_stderr"])
-        assert together < 0.01
-        assert R.mean() == pytest.approx(kernel["R"], abs=4 * together)
+        total_error = math.hypot(error, kernel["R_stderr"])
+        assert total_error < 0.01
+        assert R.mean() == pytest.approx(kernel["R"], abs=4 * total_error)
         assert R[-1] == pytest.approx(R.mean(), abs=4 * R.std(ddof=1))
-        found = parts[-1]["collisional"]
-        assert (found is None) == (name == "cooling") == ("R_collisional" not in kernel)
-        if found:  # within 4 sigma of both
-            together = math.hypot(found["half"] / 2, kernel["R_collisional_stderr"])
-            assert together < 0.01
-            assert found["mean"] == pytest.approx(kernel["R_collisional"], abs=4 * together)
+        collisional = segments[-1]["collisional"]
+        assert (collisional is None) == (name == "cooling") == ("R_collisional" not in kernel)
+        if collisional:  # None in a cooling gas
+            total_error = math.hypot(collisional["half"] / 2, kernel["R_collisional_stderr"])
+            assert total_error < 0.01
+            assert collisional["mean"] == pytest.approx(
+                kernel["R_collisional"], abs=4 * total_error
+            )
 
 
-def test_its_theory_is_that_of_the_library(page):
+def test_theory_agrees_with_the_library(page):
     r, beta = np.meshgrid([0.5, 0.8, 0.99, 1.0], np.linspace(-1.0, 1.0, 9))
     r, beta = r.ravel(), beta.ravel()
-    found = page.script(
+    page_values = page.script(
         """const [r, beta] = arguments;
         return beta.map((one, i) =>
           [lun(one, 0.5), cooling(r[i], one, 0.5), lun(one, 0.2, r[i], 0.3)]);""",
@@ -166,12 +176,12 @@ def test_its_theory_is_that_of_the_library(page):
         beta.tolist(),
     )
     friction = theory.friction_ratio(r, beta, 0.3, inertia=0.2, spin_share=0)
-    friction[beta == -1] = 0  # a limit for spins that are there: the page asks whether they are
+    friction[beta == -1] = 0  # the library has the limit with spins, the page R without
     expected = [theory.lun_ratio(beta, 0.5), theory.cooling_ratio(r, beta), friction]
-    np.testing.assert_allclose(np.transpose(found), expected, atol=1e-12)
+    np.testing.assert_allclose(np.transpose(page_values), expected, atol=1e-12)
 
 
-def test_a_gas_that_would_collapse_goes_on(page):
+def test_a_gas_close_to_collapse_continues(page):
     collisions, time, R = page.script(
         """const gas = started(SCENES.cooling, { r: 0.76, beta: -0.95 }, 1);
         for (let k = 1; k <= 300; k++) {
@@ -200,44 +210,44 @@ NOISE = """
 
 
 @pytest.mark.parametrize(("samples", "memory", "transient"), [(400, 0.5, 10), (2000, 0.9, 100)])
-def test_intervals_hold_the_mean_of_a_series_that_has_settled(page, samples, memory, transient):
-    found = page.script(NOISE, 150, samples, memory, transient)
-    told = [one for one in found if one and one["half"]]
-    assert len(told) > 120
-    assert min(one["from"] for one in told) >= transient
-    held = np.mean([abs(one["mean"] - 1) < one["half"] for one in told])
-    assert held > 0.95 - 4 * math.sqrt(0.05 * 0.95 / len(told))
+def test_intervals_cover_the_mean_of_a_settled_series(page, samples, memory, transient):
+    averages = page.script(NOISE, 150, samples, memory, transient)
+    known_averages = [average for average in averages if average and average["half"]]
+    assert len(known_averages) > 120
+    assert min(average["from"] for average in known_averages) >= transient
+    covered = np.mean([abs(average["mean"] - 1) < average["half"] for average in known_averages])
+    assert covered > 0.95 - 4 * math.sqrt(0.05 * 0.95 / len(known_averages))
 
 
-def test_nothing_is_said_of_a_series_that_is_short_or_drifts(page):
+def test_short_and_drifting_series_have_no_mean(page):
     short = page.script(NOISE, 50, 23, 0.5, 5)
     drifting = page.script(NOISE, 50, 600, 0.5, 600)
     assert short == [None] * 50
     assert drifting.count(None) >= 48
 
 
-def test_the_transient_of_a_sheared_gas_is_not_in_its_mean(page):
-    """R is above 0.4 for 170 T, and 0.3567(8) later, as the kernel has it over 60000 T."""
-    found = page.script(
+def test_the_mean_of_a_sheared_gas_excludes_the_transient(page):
+    """R is above 0.4 for 170 T, and then 0.3567(8), by the kernel over 60000 T."""
+    averages = page.script(
         """const run = new Run(SCENES.sheared, { r: 0.9, beta: 0.5 }, 3), found = [];
         for (let k = 0; k < 250; k++) { run.advance(10); found.push(run.record.average()); }
         return found;"""
     )
-    assert found[:10] == [None] * 10
-    told = [one for one in found if one and one["half"]]
-    assert len(told) > 50
-    assert min(one["from"] for one in told) > 50
-    assert all(abs(one["mean"] - 0.3567) < 2 * one["half"] for one in told)
-    assert told[-1]["end"] - told[-1]["from"] > 1000
+    assert averages[:10] == [None] * 10
+    known_averages = [average for average in averages if average and average["half"]]
+    assert len(known_averages) > 50
+    assert min(average["from"] for average in known_averages) > 50
+    assert all(abs(average["mean"] - 0.3567) < 2 * average["half"] for average in known_averages)
+    assert known_averages[-1]["end"] - known_averages[-1]["from"] > 1000
 
 
-def now(page):
+def state_of(page):
     return page.script(
         "const { gas } = panels[0].run; return [gas.time, gas.collisions, gas.r, gas.beta, name]"
     )
 
 
-def slide(page, key, value):
+def move_slider(page, key, value):
     page.script(
         """const slider = document.querySelector(`.${arguments[0]}`);
         slider.value = arguments[1];
@@ -251,16 +261,16 @@ def press(page, key):
     page.driver.switch_to.active_element.send_keys(key)
 
 
-def test_it_moves_at_once_and_pauses(page):
-    begun = now(page)[0]
-    page.wait(lambda: now(page)[0] > begun and now(page)[1] > 20)
+def test_the_gas_moves_at_once_and_pauses(page):
+    start = state_of(page)[0]
+    page.wait(lambda: state_of(page)[0] > start and state_of(page)[1] > 20)
     press(page, " ")
     assert page.text("#pause") == "Play"
-    stopped = now(page)
+    paused = state_of(page)
     page.script("return new Promise(done => setTimeout(done, 200))")
-    assert now(page) == stopped
+    assert state_of(page) == paused
     page.find("#pause")[0].click()
-    page.wait(lambda: now(page)[0] > stopped[0])
+    page.wait(lambda: state_of(page)[0] > paused[0])
 
 
 @pytest.mark.parametrize("clicked", [".r", ".beta", "#restart", "input[value=vibrated]"])
@@ -272,25 +282,25 @@ def test_the_space_bar_pauses_whatever_was_clicked_before(page, clicked):
     assert page.text("#pause") == "Pause"
 
 
-def test_sliders_act_at_once_and_the_address_keeps_them(page):
-    slide(page, "r", 0.8)
-    slide(page, "beta", -0.5)
-    assert now(page)[2:] == [0.8, -0.5, "cooling"]
+def test_sliders_act_at_once_and_the_address_stores_them(page):
+    move_slider(page, "r", 0.8)
+    move_slider(page, "beta", -0.5)
+    assert state_of(page)[2:] == [0.8, -0.5, "cooling"]
     assert float(page.text(".theory")) == pytest.approx(theory.cooling_ratio(0.8, -0.5), abs=6e-4)
     assert page.text(".collisional") == "only of a driven gas"
     page.find("input[value=sheared]")[0].click()
-    assert now(page)[2:] == [0.8, -0.5, "sheared"]
+    assert state_of(page)[2:] == [0.8, -0.5, "sheared"]
     assert float(page.text(".theory")) == pytest.approx(theory.lun_ratio(-0.5, 0.5), abs=6e-4)
     assert page.script("return location.hash") == "#sheared/r0.8/beta-0.5"
     page.script("location.hash = '#vibrated/r0.7/beta1'")
-    page.wait(lambda: now(page)[2:] == [0.7, 1, "vibrated"])
+    page.wait(lambda: state_of(page)[2:] == [0.7, 1, "vibrated"])
     assert page.text(".law") == "Lun's formula, for averages over collisions"
     page.find("input.r")[0].send_keys("\ue014")  # the arrow to the right
-    assert now(page)[2] == pytest.approx(0.71)
+    assert state_of(page)[2] == pytest.approx(0.71)
 
 
 @pytest.mark.parametrize(
-    ("address", "said"),
+    ("address", "message"),
     [
         ("toString", "scene = toString: must be one of cooling, vibrated, sheared"),
         ("cooling/r2/beta0", "r = 2: must be from 0.6 to 1"),
@@ -298,21 +308,21 @@ def test_sliders_act_at_once_and_the_address_keeps_them(page):
         ("%", "URI malformed"),
     ],
 )
-def test_an_address_that_cannot_be_followed_is_told_in_one_line(file, page, address, said):
+def test_an_illegal_address_is_reported_in_one_line(file, page, address, message):
     page.open(file, f"#{address}")
-    expected = f"The address cannot be followed: {said}. This is the first scene."
+    expected = f"The address cannot be followed: {message}. This is the first scene."
     assert page.text("#message") == expected
-    assert now(page)[2:] == [0.9, 0.5, "cooling"]
-    slide(page, "r", 0.8)
+    assert state_of(page)[2:] == [0.9, 0.5, "cooling"]
+    move_slider(page, "r", 0.8)
     assert page.text("#message") == ""
 
 
-def test_two_gases_beside_each_other(file, page):
+def test_two_gases_side_by_side(file, page):
     page.find("#compare")[0].click()
     assert page.script("return location.hash") == "#cooling/r0.9/beta0.5/vs/r0.99/beta0.5"
     assert len(page.find("canvas.gas")) == len(page.find(".present")) == 2
     page.open(file, "#sheared/r0.9/beta-0.5/vs/r0.9/beta1/q1")
-    assert [one.text for one in page.find(".theory")] == ["0.091", "0.500"]
+    assert [element.text for element in page.find(".theory")] == ["0.091", "0.500"]
     page.wait(lambda: page.script("return panels[1].run.gas.collisions") > 20)
     times = page.script("return panels.map(({ run }) => run.gas.time)")
     assert times[0] == pytest.approx(times[1], rel=0.05)
@@ -323,8 +333,8 @@ def test_two_gases_beside_each_other(file, page):
 
 @pytest.mark.parametrize("second", ["", "/vs/r0.9/beta0"])
 @pytest.mark.parametrize("size", [(1920, 1080), (1280, 720), (1024, 768)])
-def test_for_projectors_type_is_large_and_all_is_in_sight(file, page, size, second):
-    with emulated(page, *size, mobile=False):
+def test_for_projectors_letters_are_large_and_all_is_visible(file, page, size, second):
+    with emulated_screen(page, *size, mobile=False):
         page.open(file, f"#sheared/r0.9/beta0.5{second}")
         press(page, "p")
         (mode,) = page.find("#projector")
@@ -333,22 +343,31 @@ def test_for_projectors_type_is_large_and_all_is_in_sight(file, page, size, seco
             for box in boxes(page, selector):
                 assert 0 <= box["left"] < box["right"] <= size[0]
                 assert 0 <= box["top"] < box["bottom"] <= size[1]
-        lies_in_its_panel(page, ".mean")
-        for one in page.find(".present"):
-            assert float(one.value_of_css_property("font-size")[:-2]) > size[1] / 36
-        assert not any(one.is_displayed() for one in page.find("table, .question, footer"))
+        check_that_it_fits_its_panel(page, ".mean")
+        for element in page.find(".present"):
+            assert float(element.value_of_css_property("font-size")[:-2]) > size[1] / 36
+        assert not any(element.is_displayed() for element in page.find("table, .question, footer"))
         press(page, "p")
         assert page.find("footer")[0].is_displayed()
 
 
-SAID = [("cooling", {"r": 0.8, "beta": -0.8}, 0.975), ("cooling", {"r": 0.99, "beta": -0.8}, 0.05)]
-SAID += [("vibrated", {"r": 0.9, "beta": 1.0}, 0.50), ("vibrated", {"r": 0.95, "beta": 0.0}, 0.215)]
-SAID += [("vibrated", {"r": 0.7, "beta": 0.0}, 0.277), ("vibrated", {"r": 0.9, "beta": 0.0}, 0.225)]
-SAID += [("vibrated", {"r": 0.9, "beta": 0.0, "q": 1}, 0.30)]
+ANSWERS = [
+    ("cooling", {"r": 0.8, "beta": -0.8}, 0.975),
+    ("cooling", {"r": 0.99, "beta": -0.8}, 0.05),
+]
+ANSWERS += [
+    ("vibrated", {"r": 0.9, "beta": 1.0}, 0.50),
+    ("vibrated", {"r": 0.95, "beta": 0.0}, 0.215),
+]
+ANSWERS += [
+    ("vibrated", {"r": 0.7, "beta": 0.0}, 0.277),
+    ("vibrated", {"r": 0.9, "beta": 0.0}, 0.225),
+]
+ANSWERS += [("vibrated", {"r": 0.9, "beta": 0.0, "q": 1}, 0.30)]
 
 
-@pytest.mark.parametrize(("name", "material", "R"), SAID)
-def test_answers_to_questions_say_what_the_kernel_finds(page, name, material, R):
+@pytest.mark.parametrize(("name", "material", "R"), ANSWERS)
+def test_answers_to_questions_agree_with_the_kernel(page, name, material, R):
     kernel, _ = kernel_R(name, **material)
     assert kernel["R"] == pytest.approx(R, abs=0.005 + 4 * kernel["R_stderr"])
     assert kernel["R_stderr"] < 0.003
@@ -356,7 +375,7 @@ def test_answers_to_questions_say_what_the_kernel_finds(page, name, material, R)
 
 
 @contextmanager
-def emulated(page, width, height, mobile=True):
+def emulated_screen(page, width, height, mobile=True):
     size = {"width": width, "height": height, "deviceScaleFactor": 1 + mobile, "mobile": mobile}
     page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
@@ -374,8 +393,8 @@ def boxes(page, selector):
     )
 
 
-def lies_in_its_panel(page, selector):
-    """Whether the longest mean has room."""
+def check_that_it_fits_its_panel(page, selector):
+    """Check that an element fits its panel when it shows the longest mean."""
     page.script(
         "playing = false; go(); for (const one of panels) one.say('mean', '0.2222 ± 0.0222')"
     )
@@ -387,14 +406,18 @@ def lies_in_its_panel(page, selector):
 @pytest.mark.parametrize("scene", ["cooling", "vibrated", "sheared"])
 @pytest.mark.parametrize("second", ["", "/vs/r0.8/beta0"])
 def test_on_a_phone_the_gas_its_sliders_and_R_are_in_one_view(file, page, scene, second):
-    with emulated(page, 390, 844):
+    with emulated_screen(page, 390, 844):
         page.open(file, f"#{scene}/r0.9/beta0.5{second}")
         assert page.script("return scrollY") == 0
         for selector in ("canvas.gas", "#pause", ".present", ".mean", ".r", ".beta"):
-            found = boxes(page, selector)
-            assert found and all(0 <= one["top"] < one["bottom"] <= 844 for one in found)
-            assert all(0 <= one["left"] < one["right"] <= 390 for one in found)
-        lies_in_its_panel(page, ".mean")
+            rectangles = boxes(page, selector)
+            assert rectangles and all(
+                0 <= rectangle["top"] < rectangle["bottom"] <= 844 for rectangle in rectangles
+            )
+            assert all(
+                0 <= rectangle["left"] < rectangle["right"] <= 390 for rectangle in rectangles
+            )
+        check_that_it_fits_its_panel(page, ".mean")
     for width in (320, 390):
-        with emulated(page, width, 740):
+        with emulated_screen(page, width, 740):
             assert page.script("return document.documentElement.scrollWidth") <= width

@@ -1,4 +1,4 @@
-"""A slider that turns the slides of a page."""
+"""Slides in a real browser: a slider turns them."""
 
 import pytest
 from selenium.webdriver.common.keys import Keys
@@ -23,7 +23,7 @@ def test_arrow_keys_turn_the_slides(tmp_path, browser):
     browser.open(page)
     (slider,) = browser.find("input")
     for name in ("first", "second", "third", "third"):
-        shown = [one.text for one in browser.find("section") if one.is_displayed()]
-        assert shown == [f"{name}\n{name} text"] and browser.text("output") == name
+        visible = [section.text for section in browser.find("section") if section.is_displayed()]
+        assert visible == [f"{name}\n{name} text"] and browser.text("output") == name
         slider.send_keys(Keys.ARROW_RIGHT)
     assert browser.complaints() == [] and browser.requests() == []

@@ -1,5 +1,5 @@
-"""Random kicks of a stochastic drive, and the numbers that they are drawn from, as one would write
-them first: plain integers and lists."""
+"""Kicks of a thermostat and steps of a Langevin bath, and their random numbers, in plain integers
+and lists."""
 
 import math
 from typing import NamedTuple
@@ -8,13 +8,13 @@ WORD = 2**64
 
 
 class SplitMix:
-    """Steele, Lea and Flood, OOPSLA 2014, Fig. 13; `word` is its state."""
+    """SplitMix64 (Steele, Lea and Flood, OOPSLA 2014, Fig. 13); `word` is the generator's state."""
 
     def __init__(self, word):
         self.word = int(word)
 
-    def next(self):
-        """The next of 2^64 integers."""
+    def next_integer(self):
+        """The next random integer in [0, 2^64)."""
         self.word = (self.word + 0x9E3779B97F4A7C15) % WORD
         z = self.word
         z = (z ^ (z // 2**30)) * 0xBF58476D1CE4E5B9 % WORD
@@ -22,7 +22,7 @@ class SplitMix:
         return z ^ (z // 2**31)
 
     def gaussian(self):
-        """A Gaussian number of variance 1, by Marsaglia's polar method."""
+        """A Gaussian random number of variance 1, by Marsaglia's polar method."""
         square = 0.0
         while not 0.0 < square < 1.0:
             x, y = 2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0
@@ -30,87 +30,93 @@ class SplitMix:
         return x * math.sqrt(-2.0 * math.log(square) / square)
 
     def uniform(self):
-        """A number in [0, 1), from the 53 leading bits."""
-        return (self.next() // 2**11) / 2**53
+        """A random number in [0, 1), from the 53 leading bits of an integer."""
+        return (self.next_integer() // 2**11) / 2**53
 
 
 class Drive(NamedTuple):
-    """A thermostat or a bath: where it stands."""
+    """The state of a thermostat or of a bath."""
 
     due: list  # absolute time of each particle's next kick or step
     word: int  # the generator's state
-    order: list  # the particles in the order in which a partner is drawn from them
+    order: list  # particles, in the order of the list that partners are drawn from
 
 
 class Kicks:
-    """Kicks under way, of a thermostat (power, spin share, interval)."""
+    """The kicks of a thermostat (power, spin share, interval)."""
 
-    def __init__(self, thermostat, inertia, dimension, drive, company):
-        self.company = company
+    def __init__(self, thermostat, inertia, dimension, drive, bodies):
+        self.bodies = bodies
         power, share, self.interval = thermostat
         self.inertia, self.dimension, self.spins = inertia, dimension, 2 * dimension - 3
         self.due, self.order = list(drive.due), list(drive.order)
         self.random = SplitMix(drive.word)
         energy = power * self.interval
         # a component that is uniform in [-k, k] has the mean square k^2/3, and two particles get it
-        self.push = math.sqrt((1.0 - share) * energy / dimension * 3.0)
-        self.turn = math.sqrt(share * energy / (self.spins * inertia) * 3.0) if inertia else 0.0
+        self.kick = math.sqrt((1.0 - share) * energy / dimension * 3.0)
+        self.spin_kick = (
+            math.sqrt(share * energy / (self.spins * inertia) * 3.0) if inertia else 0.0
+        )
 
-    def next(self, time):
-        """(wait, kind, particle, none) of the next kick."""
+    def next_event(self, time):
+        """(wait, kind, particle, -1) of the next kick."""
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def give(self, i, v, w):
-        """Kick particle i and one that is drawn, in the arrays of velocities and of spins."""
-        others = [k for k in self.order if k != i]
-        j = others[math.floor(self.random.uniform() * len(others))]
-        m = self.company.mass
-        # so that p^2/2 (1/m_i + 1/m_j) is as much for any two
-        size = self.push * math.sqrt(2.0 / (1.0 / m[i] + 1.0 / m[j]))
+    def apply(self, i, v, w):
+        """Kick particle i and a random partner, in the arrays of velocities and of spins."""
+        candidates = [k for k in self.order if k != i]
+        j = candidates[math.floor(self.random.uniform() * len(candidates))]
+        m = self.bodies.mass
+        # so that p^2/2 (1/m_i + 1/m_j) is the same for any pair
+        size = self.kick * math.sqrt(2.0 / (1.0 / m[i] + 1.0 / m[j]))
         for axis in range(self.dimension):
             kick = self._component(size)
             v[i, axis] += kick / m[i]
             v[j, axis] -= kick / m[j]
         if self.inertia:
             for k in (i, j):
-                size = self.turn * math.sqrt(self.inertia / (m[k] * self.company.q[k]))
+                size = self.spin_kick * math.sqrt(self.inertia / (m[k] * self.bodies.q[k]))
                 for axis in range(3 - self.spins, 3):
                     w[k, axis] += self._component(size)
         self.due[i] += self.interval
 
     def _component(self, size):
+        """A random number, uniform in [-size, size]."""
         return size * (2.0 * self.random.uniform() - 1.0)
 
 
 class Bath:
-    """Steps of drag and noise under way, of the settings of a Langevin bath."""
+    """The steps of drag and noise of a Langevin bath, from its settings."""
 
-    def __init__(self, bath, inertia, dimension, drive, company):
-        self.bath, self.company, self.due = bath, company, list(drive.due)
+    def __init__(self, bath, inertia, dimension, drive, bodies):
+        self.bath, self.bodies, self.due = bath, bodies, list(drive.due)
         self.rotates, self.dimension, self.spins = bool(inertia), dimension, 2 * dimension - 3
         self.random = SplitMix(drive.word)
 
-    def next(self, time):
-        """(wait, kind, particle, none) of the next step."""
+    def next_event(self, time):
+        """(wait, kind, particle, -1) of the next step."""
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def give(self, i, v, w):
-        """Let particle i take a step, in the arrays of velocities and of spins."""
-        m = self.company.mass[i]
+    def apply(self, i, v, w):
+        """Apply a step to particle i, in the arrays of velocities and of spins."""
+        m = self.bodies.mass[i]
         self._step(v[i], range(self.dimension), m, "")
         if self.rotates:
-            self._step(w[i], range(3 - self.spins, 3), m * self.company.q[i], "spin_")
+            self._step(w[i], range(3 - self.spins, 3), m * self.bodies.q[i], "spin_")
         self.due[i] += self.bath["interval"]
 
-    def _step(self, u, axes, mass, of):
-        """u(h) of du = -g u dt + (2 D)^(1/2) dW: mean u e^(-g h), variance D (1 - e^(-2 g h))/g."""
-        g, h = self.bath.get(f"{of}drag", 0.0), self.bath["interval"]
-        D = g * self.bath.get(f"{of}temperature", 0.0) / mass
-        D += self.bath.get(f"{of}power", 0.0) / (len(axes) * mass)
+    def _step(self, velocity, axes, mass, prefix):
+        """Advance a velocity u by a step h of du = -g u dt + (2 D)^(1/2) dW.
+
+        u(h) has the mean u e^(-g h) and the variance D (1 - e^(-2 g h))/g.
+        """
+        g, h = self.bath.get(f"{prefix}drag", 0.0), self.bath["interval"]
+        D = g * self.bath.get(f"{prefix}temperature", 0.0) / mass
+        D += self.bath.get(f"{prefix}power", 0.0) / (len(axes) * mass)
         variance = D * (1.0 - math.exp(-2.0 * g * h)) / g if g else 2.0 * D * h
         for axis in axes:
-            u[axis] *= math.exp(-g * h)
+            velocity[axis] *= math.exp(-g * h)
             if self.bath["noise"]:
-                u[axis] += math.sqrt(variance) * self.random.gaussian()
+                velocity[axis] += math.sqrt(variance) * self.random.gaussian()

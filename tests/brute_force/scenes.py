@@ -1,23 +1,23 @@
-"""The scenes that the kernel's tests run: few, since each is compiled on its own.
+"""The scenes that the kernel's tests run: few, since each compiles a kernel.
 
-What a scene does without can be had by its numbers: a contact time of 1e-300 never acts.
+Tests switch effects off by numbers rather than by another scene: a contact time of 1e-300 never
+acts.
 """
 
 import functools
 
 import numpy as np
-import pytest
+from raw import build, initial_state
+from slow_cases import slow_but
 
-from brute_force.company import Contents
+from brute_force.bodies import Mixture
 from brute_force.sides import sides_of
 from brute_force.world import World
 from roughgas.kernel.loop import REACHED
-from roughgas.kernel.record import Sampling, columns, record
-from roughgas.scene import build
-from roughgas.scene.initial import initial_state
+from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 
 NOISE = "temperature", "power"
-NEVER = 1e-300  # a contact time
+VANISHING_CONTACT_TIME = 1e-300
 UNLIMITED = 2**60
 
 _SUMS = {"contact_averages": {}}
@@ -36,15 +36,16 @@ _TABLE = {"speed": [0.0, 0.5, 2.0, 5.0], "restitution": [1.0, 0.9, 0.8, 0.5], "r
 _POWER = {"speed": 2.0**0.5, "exponent": 0.75, "least": 0.7}  # of Bizon et al. (1998)
 _RUBBER = {"restitution": 0.8, "roughness": 0.35}
 _ROUGH = {"restitution": 1.0, "roughness": 1.0}
-_LATE = {"contact_time": {"duration": NEVER}}
+_NO_CONTACT_TIME = {"contact_time": {"duration": VANISHING_CONTACT_TIME}}
 _SPHERES = {"spin": {"inertia": 0.4}}
 _SINE = {"amplitude": 1.0, "period": 2.0, "wave": "sine"}
 _SHAKEN = {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}
 
 
-def _kernel(box, *effects):
-    whole = {name: own for part in effects for name, own in part.items()}
-    return {"particles": 160 if len(box) == 2 else 64, "box": box, "effects": whole}
+def _kernel(box, *groups):
+    """Settings of a scene with these groups of effects."""
+    merged = {name: parameters for group in groups for name, parameters in group.items()}
+    return {"particles": 160 if len(box) == 2 else 64, "box": box, "effects": merged}
 
 
 KERNELS = {
@@ -52,8 +53,8 @@ KERNELS = {
     "smooth": _kernel([100, 100]),
     "sheared": _kernel([50, 50], _DISKS, _SUMS, {"shear": {"velocity": 2.0}}),
     "bed": _kernel([50, "open"], _BED, _SUMS),
-    "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _LATE, _LOG),
-    "spheres": _kernel([12, 12, 12], _SPHERES, _LATE, _ALL_SUMS, _LOG, _PATHS),
+    "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _NO_CONTACT_TIME, _LOG),
+    "spheres": _kernel([12, 12, 12], _SPHERES, _NO_CONTACT_TIME, _ALL_SUMS, _LOG, _PATHS),
     "friction": _kernel([100, 100], _DISKS, _FRICTION),
     "rubbed bed": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _FRICTION),
     "shaken": _kernel([50, 50], _DISKS, _SUMS, {"shaken_walls": _SHAKEN}, _PATHS),
@@ -95,33 +96,43 @@ KERNELS = {
 }
 
 
-RARE = ("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed", "closed spheres")
-"""Kernels that only tests marked as slow compile: in others, each effect of theirs acts as well."""
+RARE = (
+    *("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed", "closed spheres"),
+    *("friction", "shaken", "viscoelastic"),
+)
+"""Kernels that only slow tests compile: their effects act in other kernels as well."""
 
 
 def kernels(*names):
-    """Names of kernels, by default of all, as parameters of a test; rare ones are slow."""
-    return [pytest.param(n, marks=[pytest.mark.slow] * (n in RARE)) for n in names or KERNELS]
+    """Names of kernels (by default of all) as parameters of a test; RARE ones are marked slow."""
+    return slow_but(KERNELS.keys() - RARE, names or KERNELS)
 
 
 def settings(kernel, particles=None, box=None, **effects):
-    """Settings of one of KERNELS with other numbers, such as floor={"amplitude": 2}."""
-    chosen = KERNELS[kernel]
-    changed = {name: own | effects.get(name, {}) for name, own in chosen["effects"].items()}
+    """Settings of a kernel of KERNELS with other numbers, such as floor={"amplitude": 2}."""
+    kernel_settings = KERNELS[kernel]
+    changed_effects = {
+        name: parameters | effects.get(name, {})
+        for name, parameters in kernel_settings["effects"].items()
+    }
     return {
-        "particles": particles or chosen["particles"],
-        "box": box or chosen["box"],
-        "effects": changed,
+        "particles": particles or kernel_settings["particles"],
+        "box": box or kernel_settings["box"],
+        "effects": changed_effects,
     }
 
 
 def scene_of(experiment, r, beta):
-    """(kernel's scene, brute force's world) of the same experiment."""
+    """(Scene of the kernel, World of the brute force) of the same experiment."""
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
-    floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
+    floor, thermostat, shaken = (
+        effects.get(name) for name in ("floor", "thermostat", "shaken_walls")
+    )
     bath = effects.get("langevin")
-    noisy = bath and any(bath.get(f"{of}{kind}") for of in ("", "spin_") for kind in NOISE)
+    noisy = bath and any(
+        bath.get(f"{prefix}{quantity}") for prefix in ("", "spin_") for quantity in NOISE
+    )
     table, power, threshold = (
         effects.get(name) for name in ("restitution_table", "power_law", "threshold")
     )
@@ -137,7 +148,8 @@ def scene_of(experiment, r, beta):
         beta=beta,
         q=effects["spin"]["inertia"] if "spin" in effects else None,
         mu=effects.get("friction", {}).get("mu"),
-        thermostat=heat and (heat["power"], heat["spin_share"], heat["interval"]),
+        thermostat=thermostat
+        and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
         bath=bath and bath | {"noise": noisy},
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor
@@ -147,7 +159,7 @@ def scene_of(experiment, r, beta):
         shear=effects.get("shear", {}).get("velocity", 0.0),
         contact_time=effects.get("contact_time", {}).get("duration", 0.0),
         wave=(floor or {}).get("wave", "sawtooth"),
-        contents=Contents(experiment["species"], experiment.get("species_pairs", []))
+        mixture=Mixture(experiment["species"], experiment.get("species_pairs", []))
         if "species" in experiment
         else None,
         sides=sides,
@@ -166,14 +178,21 @@ def begin(experiment, r, beta, seed=0):
 
 
 def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0):
-    """Advance the kernel; columns by name. Fails where the gas collapses."""
+    """Advance the kernel and return the sampled columns by name. Fails if the gas collapses."""
     names = _columns(scene)
     rows = np.empty((samples, len(names)))
-    ended = record(state, scene, Sampling(float(interval), collisions, refresh), rows)
+    sampling = Sampling(float(interval), collisions, refresh)
+    ended = record(state, scene, sampling, rows, allocate_frames(state, 0))
     assert ended == (REACHED, samples)
     return dict(zip(names, rows.T, strict=True))
 
 
+def refresh(state, scene):
+    """Refresh a cooling gas at the present instant: rescale its velocities."""
+    run(state, scene, 1, collisions=0, refresh=1)
+
+
 @functools.cache
 def _columns(scene):
+    """Names of the sampled columns of a scene."""
     return columns(scene)

@@ -1,19 +1,30 @@
-"""Walls on single sides of the box, as one would write them first."""
+"""Walls on single sides of the box, in their plainest form."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from brute_force.formulas import first_touch, in_space
+from brute_force.formulas import first_touch, in_three_dimensions
 
-AXES = {"left_wall": 0, "right_wall": 0, "front_wall": 1, "back_wall": 1}  # others: the last
-LOW = ("left_wall", "front_wall", "bottom_wall")
-ALIKE = {"velocity": 0.0, "amplitude": 0.0, "period": 1.0, "wave": "sawtooth", "shaken": "normal"}
-ALIKE |= {"restitution": 1.0, "roughness": -1.0, "temperature": None}
+AXES = {
+    "left_wall": 0,
+    "right_wall": 0,
+    "front_wall": 1,
+    "back_wall": 1,
+}  # of other walls: the last
+LOW_WALLS = ("left_wall", "front_wall", "bottom_wall")
+DEFAULTS = {
+    "velocity": 0.0,
+    "amplitude": 0.0,
+    "period": 1.0,
+    "wave": "sawtooth",
+    "shaken": "normal",
+}
+DEFAULTS |= {"restitution": 1.0, "roughness": -1.0, "temperature": None}
 
 
-STROKES = {
+STROKE_SHAPES = {
     "sawtooth": (lambda share: share, lambda share: 1.0),
     "reversed_sawtooth": (
         lambda share: np.minimum(share / 0.1, (1.0 - share) / 0.9),
@@ -28,11 +39,11 @@ STROKES = {
         lambda share: math.pi * math.sin(2.0 * math.pi * share),
     ),
 }
-"""Height, in amplitudes, and slope, in amplitudes a period, at a share of the period."""
+"""(height in amplitudes, slope in amplitudes per period), functions of the share of the period."""
 
 
 class Side(NamedTuple):
-    """One wall."""
+    """A wall on one side of the box."""
 
     name: str
     axis: int
@@ -42,36 +53,38 @@ class Side(NamedTuple):
     settings: dict
 
     def shift(self, time):
-        """How far a stroke has gone, of a wall that is shaken; of one time or an array of them."""
-        height, _ = STROKES[self.settings["wave"]]
+        """Displacement of a shaken wall at a time, or at an array of times."""
+        height, _ = STROKE_SHAPES[self.settings["wave"]]
         return self.settings["amplitude"] * height(time / self.settings["period"] % 1.0)
 
     def speed(self, time):
-        """How fast it goes."""
-        _, slope = STROKES[self.settings["wave"]]
+        """Speed of a shaken wall at a time."""
+        _, slope = STROKE_SHAPES[self.settings["wave"]]
         fastest = self.settings["amplitude"] / self.settings["period"]
         return fastest * slope(time / self.settings["period"] % 1.0)
 
     @property
-    def goes_in(self):
-        """Whether it is shaken along its normal."""
+    def moves_along_normal(self):
+        """Whether the wall is shaken along its normal."""
         return self.settings["amplitude"] > 0.0 and self.settings["shaken"] == "normal"
 
     def velocity(self, time):
-        """Of its surface, in space."""
-        found = np.zeros(3)
-        if self.goes_in:
-            found[self.axis] = self.inwards * self.speed(time)
+        """Velocity of the wall's surface, (3,)."""
+        velocity = np.zeros(3)
+        if self.moves_along_normal:
+            velocity[self.axis] = self.inwards * self.speed(time)
         elif self.settings["amplitude"] > 0.0:
-            found[self.along] = self.speed(time)
+            velocity[self.along] = self.speed(time)
         else:
-            found[self.along] = self.settings["velocity"]
-        return found
+            velocity[self.along] = self.settings["velocity"]
+        return velocity
 
     def wait(self, gap, speed, weight, time, limit):
-        """Time until a particle meets it; gap + speed t - weight t^2/2 from where it is farthest
-        out."""
-        if self.goes_in:
+        """Time until a particle meets the wall; inf if never, or beyond the limit on strokes.
+
+        The distance from the wall's outermost position is gap + speed t - weight t^2/2.
+        """
+        if self.moves_along_normal:
             return self._wait_for_stroke(gap, speed, weight, time, limit)
         if speed >= 0.0 and weight <= 0.0:
             return math.inf
@@ -85,42 +98,44 @@ class Side(NamedTuple):
         if gap - self.shift(time) <= 1e-12 and speed < self.speed(time):
             return 0.0
 
-        def apart(wait):
+        def distance(wait):
             return gap + speed * wait - weight * wait**2 / 2.0 - self.shift(time + wait)
 
-        return first_touch(apart, limit)
+        return first_touch(distance, limit)
 
 
 def sides_of(effects, box):
-    """The walls among the settings of effects; `box` has the lengths of its sides."""
-    found = []
+    """The walls in the settings of effects, as Sides; `box` has the lengths of its sides."""
+    sides = []
     for name in ("left_wall", "right_wall", "front_wall", "back_wall", "bottom_wall", "lid"):
         if name in effects:
             last = len(box) - 1
             axis = AXES.get(name, last)
-            at, inwards = (0.0, 1.0) if name in LOW else (float(box[axis]), -1.0)
+            at, inwards = (0.0, 1.0) if name in LOW_WALLS else (float(box[axis]), -1.0)
             along = last if axis == 0 else 0
-            found.append(Side(name, axis, inwards, at, along, ALIKE | effects[name]))
-    return tuple(found)
+            sides.append(Side(name, axis, inwards, at, along, DEFAULTS | effects[name]))
+    return tuple(sides)
 
 
 def gaussian(random):
-    """Marsaglia's polar method; the second of the two numbers is thrown away."""
+    """A Gaussian random number, by Marsaglia's polar method; its second number is thrown away."""
     while True:
         x, y = (2.0 * random.uniform() - 1.0 for _ in range(2))
         if 0.0 < x * x + y * y < 1.0:
             return x * math.sqrt(-2.0 * math.log(x * x + y * y) / (x * x + y * y))
 
 
-def leave_thermal(side, random, dimension, mass, spin_mass):
-    """Velocity (D,) and spin (3,) with which a particle leaves a thermal wall."""
+def thermal_velocity_and_spin(side, random, dimension, mass, spin_mass):
+    """Velocity (D,) and spin (3,) of a particle that leaves a thermal wall."""
     temperature = side.settings["temperature"]
-    outwards = math.sqrt(-2.0 * temperature / mass * math.log(1.0 - random.uniform()))
-    v = in_space([math.sqrt(temperature / mass) * gaussian(random) for _ in range(dimension)])
-    v[side.axis] = side.inwards * outwards
-    v[side.along] += side.settings["velocity"]
-    w = np.zeros(3)
+    normal_speed = math.sqrt(-2.0 * temperature / mass * math.log(1.0 - random.uniform()))
+    velocity = in_three_dimensions(
+        [math.sqrt(temperature / mass) * gaussian(random) for _ in range(dimension)]
+    )
+    velocity[side.axis] = side.inwards * normal_speed
+    velocity[side.along] += side.settings["velocity"]
+    spin = np.zeros(3)
     if spin_mass is not None:
-        for k in range(6 - 2 * dimension, 3):
-            w[k] = math.sqrt(temperature / spin_mass) * gaussian(random)
-    return v[:dimension], w
+        for axis in range(6 - 2 * dimension, 3):
+            spin[axis] = math.sqrt(temperature / spin_mass) * gaussian(random)
+    return velocity[:dimension], spin

@@ -1,8 +1,8 @@
-"""Event-driven simulation as one would write it first: everything is predicted after each event.
+"""The simplest event-driven simulation: all events are predicted anew after each event.
 
-Written from the paper's text and equations, not from the kernel: all particles are kept at the same
-time, every pair is tried over all periodic images within reach, nothing is remembered from one
-event to the next. Absolute times, textbook roots. Units: a = m = T = 1.
+Written from the paper's text and equations, not from the kernel: all particles stay at the same
+time, each pair is tried over all periodic images within reach, and no prediction outlives an event.
+Absolute times, textbook roots. Units: a = m = T = 1.
 """
 
 import itertools
@@ -10,16 +10,16 @@ import math
 
 import numpy as np
 
-from brute_force.company import alike
+from brute_force.bodies import identical_bodies
 from brute_force.contacts import Contacts
 from brute_force.formulas import falling_time, first_touch, meeting_times
 from brute_force.kicks import Bath, Kicks, SplitMix
-from brute_force.sides import leave_thermal
+from brute_force.sides import thermal_velocity_and_spin
 from brute_force.world import Event, Snapshot
 
-# Strokes that make up a period of the floor: when they begin and end, in periods, and at what
-# height, in amplitudes; of the sine, the whole period
-STROKES = {
+# Strokes of a period of the floor: (begin, end) in periods, (height at the begin, at the end) in
+# amplitudes; a period of the sine is a single stroke
+FLOOR_STROKES = {
     "sawtooth": [(0.0, 1.0, 0.0, 1.0)],
     "reversed_sawtooth": [(0.0, 0.1, 0.0, 1.0), (0.1, 1.0, 1.0, 0.0)],
     "triangle": [(0.0, 0.5, 0.0, 1.0), (0.5, 1.0, 1.0, 0.0)],
@@ -28,10 +28,10 @@ STROKES = {
 
 
 class BruteForce(Contacts):
-    """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
+    """A simulation: `step` carries out an event, `run` a number of pair collisions."""
 
     def __init__(
-        self, world, x, v, spin, time=0.0, last_contact=None, drive=None, company=None, word=0
+        self, world, x, v, spin, time=0.0, last_contact=None, drive=None, bodies=None, word=0
     ):
         self.world = world
         self.x, self.v = np.array(x, float), np.array(v, float)
@@ -40,27 +40,35 @@ class BruteForce(Contacts):
         if spin is not None:
             self.w[:, 3 - np.shape(spin)[1] :] = spin
         self.time = float(time)
-        # the floor's stroke that is under way; at its very end the next one
-        self.strokes = STROKES[world.wave]
-        whole, share = divmod(time / world.floor[1] if world.floor else 0.0, 1.0)
-        begun = sum(share >= begin for begin, *_ in self.strokes)
-        self.stroke = int(whole) * len(self.strokes) + begun - 1
-        self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
+        # index of the floor's present stroke; at its very end, of the next one
+        self.strokes = FLOOR_STROKES[world.wave]
+        periods, share = divmod(time / world.floor[1] if world.floor else 0.0, 1.0)
+        strokes_begun = sum(share >= begin for begin, *_ in self.strokes)
+        self.stroke = int(periods) * len(self.strokes) + strokes_begun - 1
+        self.last_contacts = (
+            np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
+        )
         self.pairs = np.transpose(np.triu_indices(self.number, 1))
-        self.steps = self._steps_to_images()
-        company = company or alike(self.number, world.q)
-        self.radius, self.mass, self.q, self.species = company
-        kind, drawn = (Bath, world.bath) if world.bath else (Kicks, world.thermostat)
-        drawn = drive and drawn
-        self.kicks = kind(drawn, world.q, self.dimension, drive, company) if drawn else None
-        self.random = self.kicks.random if drawn else SplitMix(word)
-        self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
-        self.carried = np.zeros((3, 3))  # momentum times distance, by component and axis
-        self.heat = np.zeros(3)  # energy times distance
+        self.image_steps = self._image_steps()
+        bodies = bodies or identical_bodies(self.number, world.q)
+        self.radius, self.mass, self.q, self.species = bodies
+        drive_class, drive_settings = (
+            (Bath, world.bath) if world.bath else (Kicks, world.thermostat)
+        )
+        drive_settings = drive and drive_settings
+        self.kicks = (
+            drive_class(drive_settings, world.q, self.dimension, drive, bodies)
+            if drive_settings
+            else None
+        )
+        self.random = self.kicks.random if drive_settings else SplitMix(word)
+        self.contact_sums = np.zeros(3)  # of v_t^2, v_r^2 and v_t.v_r, over contacts of pairs
+        self.carried_momentum = np.zeros((3, 3))  # momentum times distance, by component and axis
+        self.carried_energy = np.zeros(3)  # energy times distance
         self._fold()
 
     def run(self, collisions):
-        """The events up to and with the so-manieth pair collision."""
+        """Run to the given number of pair collisions; return all events."""
         events = []
         while collisions > 0:
             events.append(self.step())
@@ -68,20 +76,21 @@ class BruteForce(Contacts):
         return events
 
     def run_until(self, end):
-        """The events up to the absolute time `end`, at which everything is left."""
+        """Run to the absolute time `end`; return all events."""
         events = []
         while (event := self.step(end)) is not None:
             events.append(event)
         return events
 
     def snapshot(self):
+        """The present Snapshot."""
         spin = self.w[:, 6 - 2 * self.dimension :]
         return Snapshot(self.time, self.x.copy(), self.v.copy(), spin.copy())
 
     def step(self, end=math.inf):
         """Carry out the next event and return it, or stop at `end` and return None."""
         while True:
-            limit = self._longest_look()
+            limit = self._search_limit()
             wait, kind, i, j = min(self._candidates(limit), default=(math.inf, "", 0, 0))
             if min(wait, limit) > end - self.time:
                 self._move(end - self.time)
@@ -95,24 +104,24 @@ class BruteForce(Contacts):
                 self.time = self._stroke()[1]
                 self.stroke += 1
 
-    def _longest_look(self):
-        """No pair moves by more than half a box within it, and the floor's stroke does not end."""
+    def _search_limit(self):
+        """A time within which no pair moves by half a box and no stroke of the floor ends."""
         periods = [length for length in self.world.box if length is not None]
         fastest = 2.0 * np.sqrt((self.v**2).sum(axis=1).max()) + abs(self.world.shear) + 1e-12
         limit = 0.5 * min(periods) / fastest if periods else math.inf
-        limit = min([limit, *(one.settings["period"] / 2 for one in self.world.sides)])
+        limit = min([limit, *(side.settings["period"] / 2 for side in self.world.sides)])
         return min(limit, self._stroke()[1] - self.time) if self.world.floor else limit
 
     def _stroke(self):
-        """(begin, end, height at its begin, speed) of the floor's stroke under way."""
+        """(begin, end, height at the begin, speed) of the floor's present stroke."""
         amplitude, period = self.world.floor[:2]
-        whole, k = divmod(self.stroke, len(self.strokes))
+        periods, k = divmod(self.stroke, len(self.strokes))
         begin, end, low, high = self.strokes[k]
         speed = amplitude * (high - low) / ((end - begin) * period)
-        return (whole + begin) * period, (whole + end) * period, amplitude * low, speed
+        return (periods + begin) * period, (periods + end) * period, amplitude * low, speed
 
     def surface(self, wait):
-        """(height, speed) of the floor after a time, within the stroke that is under way."""
+        """(height, speed) of the floor after a time, within the present stroke."""
         amplitude, period = self.world.floor[:2]
         if self.world.wave == "sine":
             angle = 2.0 * np.pi * (self.time + wait) / period
@@ -122,43 +131,49 @@ class BruteForce(Contacts):
         return low + speed * (self.time + wait - begin), speed
 
     def _candidates(self, limit):
-        """(wait, kind, i, j) of the earliest pair and of what each particle does at boundaries."""
-        found = list(self._boundary_events(limit))
+        """(wait, kind, i, j) of the earliest pair, the next kick and all boundary events."""
+        events = list(self._boundary_events(limit))
         if len(self.pairs):
             waits = self._pair_waits()
             first = int(np.argmin(waits))
-            found.append((waits[first], "pair", *map(int, self.pairs[first])))
+            events.append((waits[first], "pair", *map(int, self.pairs[first])))
         if self.kicks:
-            found.append(self.kicks.next(self.time))
-        return [event for event in found if event[0] <= limit]
+            events.append(self.kicks.next_event(self.time))
+        return [event for event in events if event[0] <= limit]
 
     def _pair_waits(self):
-        """Time until each pair touches, over all images that half a box of motion can reach."""
+        """Time until each pair touches, over all images within reach of half a box of motion."""
         i, j = self.pairs.T
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         shifts, drifts = self.images()
-        reach = self.radius[i] + self.radius[j]
-        return meeting_times(x + shifts[:, None], v + drifts[:, None], reach).min(axis=0)
+        contact_distances = self.radius[i] + self.radius[j]
+        return meeting_times(x + shifts[:, None], v + drifts[:, None], contact_distances).min(
+            axis=0
+        )
 
-    def _steps_to_images(self):
-        """By how many boxes every image is away that another particle could reach."""
+    def _image_steps(self):
+        """Displacements, in boxes, of all images within reach of another particle."""
         ranges = [range(0, 1) if side is None else range(-1, 2) for side in self.world.box]
         if self.world.shear:
             ranges[0] = range(-3, 4)
         return np.array(list(itertools.product(*ranges)))
 
     def images(self):
-        """Shifts and velocities of these images."""
+        """(displacements, velocities) of these images, (images, D)."""
         world = self.world
-        shifts, drifts = self.steps * [side or 0.0 for side in world.box], 0.0 * self.steps
+        shifts, drifts = (
+            self.image_steps * [side or 0.0 for side in world.box],
+            0.0 * self.image_steps,
+        )
         if world.shear:
-            shifts[:, 0] += self.steps[:, 1] * (
+            shifts[:, 0] += self.image_steps[:, 1] * (
                 (world.shear * self.time + world.slide) % world.box[0]
             )
-            drifts[:, 0] = self.steps[:, 1] * world.shear
+            drifts[:, 0] = self.image_steps[:, 1] * world.shear
         return shifts, drifts
 
     def _boundary_events(self, limit):
+        """Yield (wait, kind, i, -1) of the hits of floor and walls by each particle."""
         world = self.world
         floor = self.surface(0.0) if world.floor else None
         for i in range(self.number):
@@ -174,25 +189,27 @@ class BruteForce(Contacts):
                 yield self._side_wait(side, i, limit), side.name, i, -1
 
     def _side_wait(self, side, i, limit):
+        """Time until particle i meets a wall."""
         gap = side.inwards * (self.x[i, side.axis] - side.at) - self.radius[i]
         speed = side.inwards * self.v[i, side.axis]
         weight = side.inwards * self.world.gravity if side.axis == self.dimension - 1 else 0.0
         return side.wait(gap, speed, weight, self.time, limit)
 
     def _floor_wait(self, i, limit, level, speed):
-        """Time until particle i meets the floor, if that is before the limit."""
+        """Time until particle i meets the floor; of a sine, inf beyond the limit."""
         height, v, g = self.x[i, -1] - self.radius[i], self.v[i, -1], self.world.gravity
         if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
             return falling_time(height - level, v - speed, g)
 
-        def path(wait):
+        def height_at(wait):
             return height + v * wait - g * wait**2 / 2.0
 
-        if min(height, path(limit)) > self.world.floor[0]:  # above all strokes
+        if min(height, height_at(limit)) > self.world.floor[0]:  # above all strokes
             return math.inf
-        return first_touch(lambda wait: path(wait) - self.surface(wait)[0], limit)
+        return first_touch(lambda wait: height_at(wait) - self.surface(wait)[0], limit)
 
     def _move(self, wait):
+        """Move all particles in free flight."""
         self.x += self.v * wait
         self.x[:, -1] -= 0.5 * self.world.gravity * wait * wait
         self.v[:, -1] -= self.world.gravity * wait
@@ -200,7 +217,7 @@ class BruteForce(Contacts):
         self._fold()
 
     def _fold(self):
-        """Particles that have left a periodic box enter it on the other side."""
+        """Fold positions into the periodic box."""
         world = self.world
         offset = world.shear * self.time + world.slide
         for axis in reversed(range(self.dimension)):
@@ -214,38 +231,43 @@ class BruteForce(Contacts):
                 self.v[:, 0] -= number * world.shear
 
     def _resolve(self, kind, i, j):
+        """Carry out an event."""
         world = self.world
         if kind == "kick":
-            self.kicks.give(i, self.v, self.w)
+            self.kicks.apply(i, self.v, self.w)
         elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
-            rise = self._along_last(self.surface(0.0)[1])
-            self._bounce(i, self.dimension - 1, 1.0, rise, *world.floor[2:])
+            floor_velocity = self._along_last(self.surface(0.0)[1])
+            self._bounce(i, self.dimension - 1, 1.0, floor_velocity, *world.floor[2:])
         elif kind in ("left", "right"):
-            moving = self._along_last(self._shaking())
-            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, moving, *world.walls[1:])
+            wall_velocity = self._along_last(self._shaking())
+            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, wall_velocity, *world.walls[1:])
         else:
             self._meet_side(i, next(side for side in world.sides if side.name == kind))
 
     def _meet_side(self, i, side):
+        """Carry out the contact of particle i with a wall on a side of the box."""
         if side.settings["temperature"] is None:
             material = side.settings["restitution"], side.settings["roughness"]
             self._bounce(i, side.axis, side.inwards, side.velocity(self.time), *material)
             return
-        m = self.mass[i]
-        spin_mass = None if self.world.q is None else m * self.q[i]
-        left = leave_thermal(side, self.random, self.dimension, m, spin_mass)
-        self.v[i], self.w[i] = left
-        self.last[i] = self.time
+        mass = self.mass[i]
+        spin_mass = None if self.world.q is None else mass * self.q[i]
+        velocity_and_spin = thermal_velocity_and_spin(
+            side, self.random, self.dimension, mass, spin_mass
+        )
+        self.v[i], self.w[i] = velocity_and_spin
+        self.last_contacts[i] = self.time
 
     def _along_last(self, speed):
+        """A vector (3,) along the last axis."""
         vector = np.zeros(3)
         vector[self.dimension - 1] = speed
         return vector
 
     def _shaking(self):
-        """Velocity of the side walls, along the last axis."""
+        """Velocity of the shaken side walls, along the last axis."""
         if self.world.shaken is None:
             return 0.0
         amplitude, period = self.world.shaken

@@ -1,16 +1,16 @@
-"""What the brute force simulates, and what it tells."""
+"""The scene that the brute force simulates, its snapshots and its events."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from brute_force.company import Company, Contents
+from brute_force.bodies import Bodies, Mixture
 from brute_force.kicks import Drive
 from brute_force.sides import Side
 
 
 class World(NamedTuple):
-    """What is simulated; None and 0 stand for what is absent."""
+    """The scene of a simulation; None and 0 stand for absent effects."""
 
     box: tuple[float | None, ...]  # periods; None is open, or closed by walls
     r: float
@@ -24,31 +24,35 @@ class World(NamedTuple):
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
     shaken: tuple[float, float] | None = None  # amplitude, period of these walls' displacement
     shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
-    slide: float = 0.0  # how far that image has slid at time 0
+    slide: float = 0.0  # displacement of this image at time 0
     contact_time: float = 0.0
     wave: str = "sawtooth"  # of the floor
-    contents: Contents | None = None  # None: one species
+    mixture: Mixture | None = None  # None: one species
     sides: tuple[Side, ...] = ()  # walls on single sides of the box
-    viscous: float = 0.0  # normal speed at which viscoelastic contacts have their r; 0: not so
-    table: tuple[list, list, float] | None = None  # speeds, restitutions, speed at which r is r
-    power: tuple[float, float, float] | None = None  # speed at which r is r, exponent, least r
-    threshold: tuple[float, float] | None = None  # slower contacts have this restitution, or more
+    viscous: float = 0.0  # reference speed of viscoelastic contacts; 0: r is constant
+    table: tuple[list, list, float] | None = None  # speeds, restitutions, reference speed
+    power: tuple[float, float, float] | None = None  # reference speed, exponent, lowest r
+    threshold: tuple[float, float] | None = (
+        None  # speed, and restitution that slower contacts have at least
+    )
 
 
 class Snapshot(NamedTuple):
-    """All particles at one instant."""
+    """All particles at an instant."""
 
     time: float  # absolute
     position: np.ndarray  # (N, D), in any image
     velocity: np.ndarray
     spin: np.ndarray | None  # (N, 2D - 3)
     drive: Drive | None = None
-    company: Company | None = None  # None: all particles are alike
-    word: int = 0  # state of the random generator, where there is one
+    bodies: Bodies | None = None  # None: all particles are identical
+    word: int = 0  # state of the random generator; 0 without one
 
 
 class Event(NamedTuple):
+    """An event of a simulation."""
+
     time: float
-    kind: str  # pair, floor, left, right, kick
+    kind: str  # pair, floor, left, right, kick, or the name of a wall
     i: int
-    j: int  # -1: none
+    j: int  # -1 but in events of pairs

@@ -1,17 +1,18 @@
 import pytest
-from tests.houses import statements
+from tests.study_modules import statements
 
 from roughgas.claims import examine
-from roughgas.claims.evidence import beside_theory
+from roughgas.claims.verdicts import beside_theory
 
 
 @pytest.fixture(scope="session")
 def judged():
-    """A function that judges reduced datasets: the finding on the statement of a name."""
+    """Return a function that judges reduced datasets and returns the finding on a statement, by its
+    name."""
     every = statements()
 
     def finding(name, *datasets):
-        known = {data.attrs["experiment"]: beside_theory(data) for data in datasets}
-        return examine(every[name], known)
+        by_name = {data.attrs["experiment"]: beside_theory(data) for data in datasets}
+        return examine(every[name], by_name)
 
     return finding

@@ -1,4 +1,4 @@
-"""What the paper leaves open, on datasets of which the answer is known."""
+"""Open questions of the paper, judged on made-up datasets with known answers."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from tests.claims.gases import (
 from tests.synthetic import reduced
 
 from roughgas import theory
-from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 
 def only_with_friction(size):
@@ -78,9 +78,9 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_verdict_depends_on_the_size_of_a_deviation(judged, name, size, expected):
     make, label = CASES[name]
-    found = judged(name, make(size))
-    assert found.verdict == expected
-    assert dict(found.numbers)[label].value == pytest.approx(size, abs=0.006)
+    finding = judged(name, make(size))
+    assert finding.verdict == expected
+    assert dict(finding.numbers)[label].value == pytest.approx(size, abs=0.006)
 
 
 @pytest.mark.parametrize(
@@ -89,16 +89,16 @@ def test_a_verdict_depends_on_the_size_of_a_deviation(judged, name, size, expect
     ids=["near", "off", "far", "uncertain"],
 )
 def test_a_small_ratio_must_follow_theory_in_proportion(judged, factor, error, expected):
-    """At q = 0.01 R is 0.03 at most: in size all of these agree."""
+    """At q = 0.01 R is 0.03 at most, so that all of these agree in absolute size."""
 
     def shift(r, beta, q):
         return (factor - 1) * theory.lun_ratio(beta, q) * (q == 0.01)
 
     data = swept("vibrated_inertia", ("spin.inertia", (0.01, 1.0)), shift, error=error)
-    found = judged("vibrated_inertia_follows_lun", data)
-    assert found.verdict == expected and "6 of 6 points within 0.02" in found.reason
+    finding = judged("vibrated_inertia_follows_lun", data)
+    assert finding.verdict == expected and "6 of 6 points within 0.02" in finding.reason
     if expected != HOLDS and factor != 1:
-        label, largest = found.numbers[-1]
+        label, largest = finding.numbers[-1]
         assert label == "largest significant difference over Lun's formula"
         assert largest.value == pytest.approx(factor - 1, abs=0.01)
 
@@ -112,24 +112,25 @@ def test_a_drive_with_rotation_alone_may_differ_from_eq_lun(judged):
 
 
 def test_an_uncertain_share_makes_its_prediction_uncertain(judged):
-    """R changes by 0.7 over the range of shares: an error of 0.1 in one is one of 0.06 or more."""
-    wrong = boundaries("floor_materials", constant(0.07), input_spin_share_stderr=0.1)
-    found = judged("rough_floor_follows_rates", wrong)
-    assert found.verdict == NOT_TESTED and "errors are too large" in found.reason
+    """R changes by 0.7 over the range of shares: an error of 0.1 in the share makes 0.06 or more in
+    R."""
+    off = boundaries("floor_materials", constant(0.07), input_spin_share_stderr=0.1)
+    finding = judged("rough_floor_follows_rates", off)
+    assert finding.verdict == NOT_TESTED and "errors are too large" in finding.reason
     unknown = boundaries("floor_materials", input_spin_share_stderr=np.nan)
-    found = judged("rough_floor_follows_rates", unknown)
-    assert found.verdict == HOLDS and "error unknown" in found.reason
+    finding = judged("rough_floor_follows_rates", unknown)
+    assert finding.verdict == NOT_TESTED and "its errors are unknown" in finding.reason
 
 
 @pytest.mark.parametrize("share", [-1.5, 2.5])
-def test_a_share_that_theory_does_not_know_is_not_judged_as_the_nearest(judged, share):
-    """Nor is an error that reaches beyond what theory knows."""
+def test_a_share_beyond_theory_is_not_judged_as_the_nearest_legal_one(judged, share):
+    """The same for an error that reaches beyond the range of theory."""
     beyond = boundaries("floor_materials")
     beyond["input_spin_share"] *= share / 0.3
-    found = judged("rough_floor_follows_rates", beyond)
-    assert found.verdict == NOT_TESTED and f"share of rotation is {share}" in found.reason
-    near = np.where(SHARES == 0.3, np.clip(share, -0.99, 1.99), SHARES)
-    uncertain = boundaries("floor_materials", shares=near, input_spin_share_stderr=0.02)
+    finding = judged("rough_floor_follows_rates", beyond)
+    assert finding.verdict == NOT_TESTED and f"share of rotation is {share}" in finding.reason
+    near = np.where(SHARES == 0.3, np.clip(share, -0.9995, 1.9995), SHARES)
+    uncertain = boundaries("floor_materials", shares=near, input_spin_share_stderr=0.001)
     assert "error unknown" in judged("rough_floor_follows_rates", uncertain).reason
 
 
@@ -156,26 +157,26 @@ def unmoved(r, beta, roughness):
 )
 @pytest.mark.parametrize("kind", ["floor", "wall"])
 def test_only_rotation_matters(judged, kind, shift, expected):
-    found = judged(f"only_spinning_{kind}s_matter", boundaries(f"{kind}_materials", shift))
-    assert found.verdict == expected
-    numbers = dict(found.numbers)
+    finding = judged(f"only_spinning_{kind}s_matter", boundaries(f"{kind}_materials", shift))
+    assert finding.verdict == expected
+    numbers = dict(finding.numbers)
     assert numbers["mean share of rotation at roughness = 1"].value == pytest.approx(0.3)
     if expected == HOLDS:
-        assert "shifted by more than 0.02 at 6 of 6 points" in found.reason
+        assert "shifted by more than 0.02 at 6 of 6 points" in finding.reason
         rise = theory.stationary_ratio(0.9, -0.5, 2, 0.5, 0.3) - theory.lun_ratio(-0.5, 0.5)
-        assert found.numbers[0][1].value == pytest.approx(rise, abs=0.005)
+        assert finding.numbers[0][1].value == pytest.approx(rise, abs=0.005)
 
 
-def test_gases_of_smooth_particles_say_nothing_of_shares(judged):
-    """At beta = -1 walls set R, and put in nothing on balance."""
+def test_gases_of_smooth_particles_are_not_judged_by_shares(judged):
+    """At beta = -1 walls set R, and put in nothing on average."""
     smooth = {"beta": (-1.0, 0.0), "shares": SHARES * np.array([0.0, 1.0])}
     data = boundaries("wall_materials", lambda r, beta, rough: 0.5 * (beta == -1), **smooth)
     for name, counted in (
         ("rough_walls_follow_rates", "4 of 4 points"),
         ("only_spinning_walls_matter", "at 2 of 2 points"),
     ):
-        found = judged(name, data)
-        assert found.verdict == HOLDS and counted in found.reason
+        finding = judged(name, data)
+        assert finding.verdict == HOLDS and counted in finding.reason
 
 
 WITHOUT_SHARES = boundaries("floor_materials").drop_vars("input_spin_share")
@@ -192,9 +193,9 @@ STRONG = swept("cooling_friction", ("friction.mu", (0.2, 1.0, 10.0)))
         ("weak_friction_keeps_spin", STRONG, "No mu > 0"),
     ],
 )
-def test_what_a_sweep_does_not_hold_is_not_tested(judged, name, data, reason):
-    found = judged(name, data)
-    assert found.verdict == NOT_TESTED and reason in found.reason
+def test_statements_without_their_data_are_not_tested(judged, name, data, reason):
+    finding = judged(name, data)
+    assert finding.verdict == NOT_TESTED and reason in finding.reason
 
 
 def test_the_friction_from_which_a_gas_is_rough(judged):
@@ -213,18 +214,18 @@ def test_the_friction_from_which_a_gas_is_rough(judged):
 
 def test_weak_friction_keeps_spin(judged):
     without = swept("cooling_friction", FRICTION, lambda r, beta, mu: -1.0 * (mu == 0))
-    found = judged("weak_friction_keeps_spin", without)
-    assert found.verdict == HOLDS
-    label, fall = found.numbers[-1]
+    finding = judged("weak_friction_keeps_spin", without)
+    assert finding.verdict == HOLDS
+    label, fall = finding.numbers[-1]
     assert label == "largest fall of R"
     expected = 1 - theory.friction_ratio(0.9, -0.5, 0.2, 2, 0.5)
     assert fall.value == pytest.approx(expected, abs=0.005)
-    assert f"in theory by {expected:.4f}" in found.reason
+    assert f"in theory by {expected:.4f}" in finding.reason
 
 
 def test_weak_friction_is_not_left_out(judged):
-    """A gas that spin has left where the rate equations have R = 0.3 does not follow them; mixtures
-    of replicas are set aside, and counted."""
+    """A gas without spin where the rate equations have R = 0.3 does not follow them; mixtures of
+    replicas are set aside, and counted."""
 
     def gone(r, beta, mu):
         return (1 - theory.friction_ratio(r, beta, mu, 2, 0.5)) * ((mu == 0.2) | (mu == 0.5))

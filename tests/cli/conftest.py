@@ -1,4 +1,4 @@
-"""A small gas, and what the pipeline makes of it."""
+"""A small gas, and its points and reduced dataset."""
 
 import json
 import shutil
@@ -15,14 +15,14 @@ GAS = TINY | {"particles": 20, "schedule": COOLING | {"replicas": 4, "thermalise
 
 @pytest.fixture(scope="package")
 def product(tmp_path_factory):
-    """A folder with points of a cooling gas and what they are reduced to."""
+    """A folder with points of a cooling gas, and with their reduced dataset."""
     folder = tmp_path_factory.mktemp("products")
     shutil.copy(ROOT / "config.yaml", folder)
     settings = f"--settings={json.dumps(GAS)}"
     for beta in ("-0.5", "0.5"):
         files = [str(folder / f"beta{beta}_{seed}.nc") for seed in (1, 2)]
-        place = ["--r=0.9", f"--beta={beta}"]
-        run = ["run", "cooling", settings, *place, "--seed", "1", "2", "-o", *files]
+        options = ["--r=0.9", f"--beta={beta}"]
+        run = ["run", "cooling", settings, *options, "--seed", "1", "2", "-o", *files]
         assert main(run) == 0
     points = sorted(map(str, folder.glob("beta*.nc")))
     assert main(["reduce", *points, "-o", str(folder / "reduced.nc")]) == 0

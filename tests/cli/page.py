@@ -1,6 +1,6 @@
-"""docs/command_line.md: its commands, and what they print.
+"""docs/command_line.md: its commands, and their outputs.
 
-.venv/bin/python tests/cli/page.py      writes the page's outputs anew
+.venv/bin/python tests/cli/page.py      rewrites the outputs in the page
 """
 
 import contextlib
@@ -20,20 +20,23 @@ PAGE = ROOT / "docs" / "command_line.md"
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PROGRESS = re.compile(
     r"^.* s so far(?:, about \d+ s left)?\n", re.MULTILINE
-)  # which a slow machine makes
-WIDEST = 140
+)  # printed on slow machines
+MAX_WIDTH = 140
 NUMBER = r"[\d.]+(?:e\+\d+)?"
-MACHINE = [(rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time")]
-MACHINE += [(r'"kernel_seconds": [^,}]+', "some time"), (rf" in {NUMBER} s\b", " in some time")]
-MACHINE += [(rf"\| +{NUMBER} (s|min|h) +", "| some time ")]
-MACHINE += [(rf"[Ww]ith {NUMBER} s", "with some time")]
-MACHINE += [(r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version")]
-MACHINE += [(r"[\d.]+e-1\d", "rounding"), (r"-+", "-")]
-"""What another machine prints in another way, and in place of it."""
+MACHINE_DEPENDENT = [(rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time")]
+MACHINE_DEPENDENT += [
+    (r'"kernel_seconds": [^,}]+', "some time"),
+    (rf" in {NUMBER} s\b", " in some time"),
+]
+MACHINE_DEPENDENT += [(rf"\| +{NUMBER} (s|min|h) +", "| some time ")]
+MACHINE_DEPENDENT += [(rf"[Ww]ith {NUMBER} s", "with some time")]
+MACHINE_DEPENDENT += [(r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version")]
+MACHINE_DEPENDENT += [(r"[\d.]+e-1\d", "rounding"), (r"-+", "-")]
+"""Patterns of text that depends on the machine, and their replacements."""
 
 
 def blocks():
-    """The page's blocks of commands and their outputs, as they are written."""
+    """Return the page's blocks of commands and outputs, verbatim."""
     return BLOCK.findall(PAGE.read_text(encoding="utf-8"))
 
 
@@ -41,49 +44,49 @@ def commands(block):
     return [line[2:] for line in block.splitlines() if line.startswith("$ ")]
 
 
-def written(block, printed):
-    """The block with its outputs made anew, in the present folder, their longest lines cut.
+def with_outputs(block, output_of):
+    """Return a block with new outputs, from commands in the present folder, with long lines cut.
 
-    `printed` gives what the command with some arguments prints.
+    `output_of` returns the output for the arguments of a command.
     """
     text = ""
     for command in commands(block):
         program, *arguments = shlex.split(command)
         assert program == "roughgas"
-        lines = PROGRESS.sub("", printed(arguments)).splitlines()
+        lines = PROGRESS.sub("", output_of(arguments)).splitlines()
         text += f"$ {command}\n" + "".join(f"{cut(line)}\n" for line in lines)
     return text
 
 
 def in_this_process(arguments):
-    """What the command prints, quickly."""
+    """Return the output of the command, run in this process, which is fast."""
     stream = io.StringIO()
     with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
         main(arguments)
     return stream.getvalue()
 
 
-def in_its_own(arguments):
-    """What it prints to a person, in whose time its start counts, too."""
+def in_new_process(arguments):
+    """Return the output of the command, run in a new process, with its true run time."""
     command = [sys.executable, "-m", "roughgas", *arguments]
     both = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     return subprocess.run(command, **both, text=True).stdout
 
 
 def cut(line):
-    return line if len(line) <= WIDEST else f"{line[: WIDEST - 4]} ..."
+    return line if len(line) <= MAX_WIDTH else f"{line[: MAX_WIDTH - 4]} ..."
 
 
-def without_machine(text):
-    """A text without what depends on the machine, and without how columns are filled."""
-    for pattern, instead in MACHINE:
-        text = re.sub(pattern, instead, text)
+def comparable_lines(text):
+    """Return the words of each line, without spacing and with machine-dependent text replaced."""
+    for pattern, replacement in MACHINE_DEPENDENT:
+        text = re.sub(pattern, replacement, text)
     return [line.split() for line in text.splitlines()]
 
 
 @contextlib.contextmanager
 def folder():
-    """A folder with the configuration, entered."""
+    """Enter a temporary folder with the configuration and the studies."""
     with tempfile.TemporaryDirectory() as path, contextlib.chdir(path):
         shutil.copy(ROOT / "config.yaml", path)
         shutil.copytree(ROOT / "studies", Path(path, "studies"))
@@ -92,8 +95,8 @@ def folder():
 
 if __name__ == "__main__":
     with folder():
-        anew = BLOCK.sub(
-            lambda found: f"```console\n{written(found[1], in_its_own)}```",
+        rewritten = BLOCK.sub(
+            lambda match: f"```console\n{with_outputs(match[1], in_new_process)}```",
             PAGE.read_text(encoding="utf-8"),
         )
-    PAGE.write_text(anew, encoding="utf-8")
+    PAGE.write_text(rewritten, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""All commands with their parsers, and the command lines that their help texts give."""
+"""Parsers of all commands, and the command lines in the examples of their help texts."""
 
 import argparse
 import re
@@ -11,10 +11,12 @@ LINE = re.compile(r"\broughgas ([^#|)\n]*)")
 
 def commands():
     parser = cli.parser_of()
-    (found,) = (one for one in parser._actions if isinstance(one, argparse._SubParsersAction))
-    return found.choices
+    (subparsers,) = (
+        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
+    )
+    return subparsers.choices
 
 
 def examples(parser):
-    """The arguments of `roughgas` in each example of a help text."""
+    """Return the arguments of `roughgas` in each example of a help text."""
     return [shlex.split(line) for line in LINE.findall(parser.epilog or "")]

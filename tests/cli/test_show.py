@@ -1,4 +1,4 @@
-"""`roughgas show`: a summary of whatever the pipeline writes."""
+"""`roughgas show`: summaries of points and reduced datasets."""
 
 import json
 import shutil
@@ -14,14 +14,14 @@ from roughgas.data.reduced import read_reduced
 from roughgas.statistics.errors import YES, Estimate
 
 
-def shown(capsys, *arguments):
+def show(capsys, *arguments):
     assert main(["show", *map(str, arguments)]) == 0
     return capsys.readouterr().out
 
 
-def test_a_point(product, capsys):
+def test_the_summary_of_a_point(product, capsys):
     path = product / "beta0.5_1.nc"
-    text, point = shown(capsys, path), read_point(path)
+    text, point = show(capsys, path), read_point(path)
     expected = float(theory.cooling_ratio(0.9, 0.5))
     low, high = (float(point.R + sign * point.R_ci95) for sign in (-1, 1))
     rows = dict(line.split("  ", 1) for line in text.splitlines() if "  " in line.strip())
@@ -46,7 +46,7 @@ def test_a_point(product, capsys):
 
 
 @pytest.mark.parametrize(
-    ("more", "attributes", "lines"),
+    ("variables", "attributes", "lines"),
     [
         (
             {"R_collisional": 0.35, "R_collisional_stderr": 0.002},
@@ -72,52 +72,55 @@ def test_a_point(product, capsys):
         ({}, {"scale": "a\x1b]0;b\x07"}, [r"cooling, scale a\x1b]0;b\x07"]),
     ],
 )
-def test_what_a_point_may_say_besides(product, tmp_path, capsys, more, attributes, lines):
+def test_lines_of_optional_variables_and_attributes(
+    product, tmp_path, capsys, variables, attributes, lines
+):
     path = shutil.copy(product / "beta0.5_1.nc", tmp_path / "p.nc")
     with netCDF4.Dataset(path, "a") as file:
         file.setncatts(attributes)
-        for name, value in more.items():
-            (file[name] if name in file.variables else file.createVariable(name, "f8"))[...] = value
+        for name, value in variables.items():
+            present = name in file.variables
+            (file[name] if present else file.createVariable(name, "f8"))[...] = value
         E_rot = Estimate(file["E_rot"][...].item(), 1e-5)
-    text = shown(capsys, path)
+    text = show(capsys, path)
     for line in lines:
         assert line.format(E_rot) in text
-    for each in (text, shown(capsys, path, "--json")):
-        assert all(sign.isprintable() for sign in each.replace("\n", ""))
+    for output in (text, show(capsys, path, "--json")):
+        assert all(character.isprintable() for character in output.replace("\n", ""))
 
 
-def test_a_mixture_is_shown_species_by_species(tmp_path, capsys):
+def test_the_summary_of_a_mixture_has_a_row_for_each_species(tmp_path, capsys):
     species = [{"name": name, "fraction": 0.5, "mass": mass} for name, mass in (("a", 1), ("b", 4))]
     settings = json.dumps(GAS | {"species": species, "swept": "species.b.mass"})
     run = ["run", "pair/mass4", f"--settings={settings}", "--r=0.9", "--beta=0.5"]
     assert main([*run, "-o", str(tmp_path / "p.nc")]) == 0
-    point, text = read_point(tmp_path / "p.nc"), shown(capsys, tmp_path / "p.nc")
+    point, text = read_point(tmp_path / "p.nc"), show(capsys, tmp_path / "p.nc")
     for k, name in enumerate("ab"):
-        one = point.isel(species=k)
-        found = [
-            f"{Estimate(float(one[f'{key}_species']), float(one[f'{key}_species_stderr']))}"
-            f"{'' if int(one[f'{key}_species_trusted']) == YES else '?'}"
+        row = point.isel(species=k)
+        cells = [
+            f"{Estimate(float(row[f'{key}_species']), float(row[f'{key}_species_stderr']))}"
+            f"{'' if int(row[f'{key}_species_trusted']) == YES else '?'}"
             for key in ("E_trans", "E_rot", "R")
         ]
-        assert [name, "10", *found] in [line.split() for line in text.splitlines()]
+        assert [name, "10", *cells] in [line.split() for line in text.splitlines()]
     assert "theory of free cooling of mixtures: R is " in text
 
 
-def test_a_reduced_dataset(product, capsys):
+def test_the_summary_of_a_reduced_dataset(product, capsys):
     path = product / "reduced.nc"
-    text, data = shown(capsys, path), read_reduced(path)
+    text, data = show(capsys, path), read_reduced(path)
     rows = [line.split() for line in text.splitlines() if line.startswith("0.9 ")]
     assert [row[:3] for row in rows] == [["0.9", "-0.5", "2"], ["0.9", "0.5", "2"]]
     for row, R, stderr in zip(rows, data.R.values[0], data.R_stderr.values[0], strict=True):
         assert row[3] == f"{Estimate(R, stderr)}"
         expected = float(theory.cooling_ratio(0.9, float(row[1])))
         assert row[5:7] == [f"{expected:.4f}", f"{R - expected:+.4f}"]
-    first, _ = json.loads(shown(capsys, path, "--json"))["points"]
+    first, _ = json.loads(show(capsys, path, "--json"))["points"]
     assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
 
 
-def test_an_interval_of_a_ratio_that_never_changes_is_not_known(tmp_path, capsys):
-    """Without contacts no spin begins, and R is 0 at every sample."""
+def test_the_interval_of_a_constant_ratio_is_not_known(tmp_path, capsys):
+    """Without contacts spins stay 0, and R is 0 in all samples."""
     output = tmp_path / "thin.nc"
     changes = ("box=[1e6,1e6]", "schedule.equilibrate=1", "schedule.measure=20")
     options = [word for change in changes for word in ("--set", change)]

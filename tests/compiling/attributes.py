@@ -21,18 +21,18 @@ from numba.extending import overload
 
 PACKAGES = "numba", "llvmlite"
 VARIABLES = dict, MappingProxyType  # of an object, of a class
-# pickle notes the first in each class of an object that it saves, llvmlite the second in constants
-NOTES = "__slotnames__", "_StringReferenceCaching__cached_refstr"
+# pickle sets the first in each class of an object that it saves, llvmlite the second in constants
+LAZY_ATTRIBUTES = "__slotnames__", "_StringReferenceCaching__cached_refstr"
 
 
-def is_theirs(module):
+def is_of_numba(module):
     """Whether a module of this name belongs to numba or llvmlite."""
     return str(module).partition(".")[0] in PACKAGES
 
 
 def owners():
     """{name: attributes} of modules, classes and objects."""
-    waiting = [(name, module) for name, module in [*sys.modules.items()] if is_theirs(name)]
+    waiting = [(name, module) for name, module in [*sys.modules.items()] if is_of_numba(name)]
     waiting.reverse()
     attributes, visited = {}, {}
     while waiting:
@@ -44,14 +44,14 @@ def owners():
         for key, value in attributes[name].items():
             is_class = isinstance(value, type)
             module = value.__module__ if is_class else type(value).__module__
-            if is_theirs(module) and isinstance(getattr(value, "__dict__", None), VARIABLES):
+            if is_of_numba(module) and isinstance(getattr(value, "__dict__", None), VARIABLES):
                 path = f"{module}.{value.__qualname__}" if is_class else f"{name}.{key}"
                 waiting.append((path, value))
     return attributes
 
 
 def items_of(value):
-    """The items of a container by key, index or identity."""
+    """Items of a container by key, index or identity."""
     if isinstance(value, dict):
         return dict(value)
     if isinstance(value, list):
@@ -65,11 +65,11 @@ def snapshot():
         (name, key): (value, items_of(value))
         for name, attributes in owners().items()
         for key, value in attributes.items()
-        if key not in NOTES and not isinstance(value, ModuleType)
+        if key not in LAZY_ATTRIBUTES and not isinstance(value, ModuleType)
     }
 
 
-def is_same(item, now):
+def is_unchanged(item, now):
     """Whether an item is the same object, or a function that still has all its candidates."""
     candidates = set(getattr(item, "templates", ()))
     return item is now or (candidates and candidates <= set(getattr(now, "templates", ())))
@@ -81,7 +81,9 @@ def changes(before, after):
     differing = {key for key in after.keys() - before.keys() if key[0] in names}
     for key, (value, items) in before.items():
         value_now, items_now = after.get(key, (None, {}))
-        has_items = all(k in items_now and is_same(item, items_now[k]) for k, item in items.items())
+        has_items = all(
+            k in items_now and is_unchanged(item, items_now[k]) for k, item in items.items()
+        )
         if key not in after or value_now is not value or not has_items:
             differing.add(key)
     return {f"{owner}.{attribute}" for owner, attribute in differing}
@@ -108,14 +110,14 @@ def simulate(snapshots):
 
     from roughgas.compiling.jit import Compiled
 
-    write = Compiled._for_types
+    specialise = Compiled.specialise
 
-    def write_and_look(function, *arguments):
+    def take_snapshot(function, *arguments, **options):
         if function.__name__ == "record":
             snapshots.append(snapshot())
-        return write(function, *arguments)
+        return specialise(function, *arguments, **options)
 
-    Compiled._for_types = write_and_look
+    Compiled.specialise = take_snapshot
     scene, state = begin(settings("smooth"), 0.9, -1.0)
     run(state, scene, 1, collisions=100)
 
@@ -125,10 +127,10 @@ if __name__ == "__main__":
     first, control = snapshot(), []
     compile_by_numba(control)
     last, snapshots = snapshot(), []
-    usual = set().union(*(changes(first, later) for later in [*control, last]))
+    numbas_own = set().union(*(changes(first, later) for later in [*control, last]))
     exec("".join(sys.argv[1:]))
     simulate(snapshots)
     print(len(last), "attributes,", len(snapshots), "snapshots of a compilation")
     differing = set().union(*(changes(last, later) for later in [*snapshots, snapshot()]))
-    for name in sorted(differing - usual):
+    for name in sorted(differing - numbas_own):
         print(name)

@@ -29,22 +29,31 @@ def output_of(program, *arguments, **variables):
     return run.stdout.splitlines()
 
 
-QUICK_WAYS = "vectorize_eager", "cfunc", "function_values", "cached"
-
-
-def test_numba_compiles_a_users_functions_before_and_after_a_simulation(tmp_path):
-    assert output_of("ways.py", *QUICK_WAYS, NUMBA_CACHE_DIR=str(tmp_path))[-1] == "all"
+PATHS = pytest.mark.parametrize("switch", ["0", "1"], ids=["private", "public"])
+QUICK = "vectorize_eager", "guvectorize", "cfunc", "jit_class", "parallel", "cached"
 
 
 @pytest.mark.slow
-def test_numba_compiles_in_every_public_way_before_and_after_a_simulation(cold):
+@PATHS
+def test_numba_compiles_a_users_functions_before_and_after_a_simulation(switch, tmp_path):
+    variables = {"NUMBA_CACHE_DIR": str(tmp_path), "ROUGHGAS_PUBLIC_NUMBA": switch}
+    assert output_of("user_code.py", *QUICK, **variables)[-1] == "all"
+
+
+@pytest.mark.slow
+@PATHS
+def test_numba_compiles_by_every_public_means_before_and_after_a_simulation(switch, cold):
     """The second process loads the kernel and the cached functions."""
     for _ in range(2):
-        assert output_of("ways.py", **cold)[-1] == "all"
+        assert output_of("user_code.py", ROUGHGAS_PUBLIC_NUMBA=switch, **cold)[-1] == "all"
 
 
-def test_a_simulation_leaves_every_attribute_of_numbas_as_it_was(cold):
-    (counts,) = output_of("attributes.py", **cold)
+@pytest.mark.slow
+@PATHS
+def test_a_simulation_leaves_every_attribute_of_numbas_as_it_was(switch, tmp_path):
+    folder = str(tmp_path)
+    variables = {"NUMBA_CACHE_DIR": folder, "ROUGHGAS_CACHE_DIR": folder}
+    (counts,) = output_of("attributes.py", ROUGHGAS_PUBLIC_NUMBA=switch, **variables)
     assert int(counts.split()[0]) > 10_000
     assert counts.endswith(", 1 snapshots of a compilation")
 
@@ -53,7 +62,7 @@ CODE = "numba.core.registry.cpu_target.target_context.codegen()"
 GUILTY = {
     f"{CODE}._library_class = {CODE}._library_class": "._codegen._library_class",
     f"{CODE}.set_env = {CODE}.set_env": "._codegen.set_env",
-    "numba.core.event.start_event = lambda *about, **more: None": "numba.core.event.start_event",
+    "numba.core.event.start_event = lambda *_, **options: None": "numba.core.event.start_event",
     "numba.types.Array.guilty = True": "numba.core.types.npytypes.Array.guilty",
     "numba.float64.guilty = True": ".double.guilty",
     "numba.core.typing.templates.builtin_registry.functions.pop()": ".builtin_registry.functions",
@@ -61,6 +70,7 @@ GUILTY = {
 """Statements that change an attribute: the end of its name."""
 
 
+@pytest.mark.slow
 def test_a_changed_attribute_is_named(cold):
     _, *names = output_of("attributes.py", "; ".join(GUILTY), **cold)
     assert len(names) >= len(GUILTY)

@@ -1,6 +1,5 @@
-from pathlib import Path
-
 import pytest
+from tests.configurations import EXPERIMENTS
 
 from roughgas import config
 from roughgas.base import InputError
@@ -9,12 +8,12 @@ from roughgas.base import InputError
 @pytest.fixture(scope="session")
 def paper():
     """The project's configuration, which no test changes."""
-    return config.load(Path(__file__).parents[1] / "experiments.yaml")
+    return config.load(EXPERIMENTS)
 
 
 @pytest.fixture(scope="session")
 def refusal():
-    """A function that calls another one, and returns the one line in which that refuses."""
+    """A function that calls another one, and returns its refusal, a single line."""
 
     def message(function, *arguments):
         with pytest.raises(InputError) as caught:

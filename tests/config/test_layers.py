@@ -1,12 +1,11 @@
-"""A layer by Gamma, f*, diameters and cycles: what follows from it, once, and for whom."""
+"""A layer by Gamma, f*, diameters and cycles: the settings derived from these."""
 
 import math
 
 import pytest
+from raw import build, protocols
 
-from roughgas import config
-from roughgas.scene import build
-from roughgas.simulation import schedule
+from roughgas.config import WrittenExperiment
 
 RUBBER = {"restitution": "particles", "roughness": "particles"}
 STRIPES = {
@@ -20,41 +19,45 @@ CYCLES = {"equilibrate": 40, "measure": 8, "samples": 32, "repeat": 4}
 
 def settings(**layer):
     cycles = {"cycles": CYCLES} | layer
-    return config.validated(STRIPES | {"layer": STRIPES["layer"] | cycles}, "stripes")
+    return (
+        WrittenExperiment(STRIPES | {"layer": STRIPES["layer"] | cycles}).experiment("stripes").raw
+    )
 
 
-def test_gamma_and_f_star_are_those_of_the_floor():
-    """Backwards from the scene that is built, by other formulas: the largest acceleration of the
-    floor, and the time that it takes to fall through the depth."""
-    found = settings()
-    floor, g = build(found, 0.7, 0.35).effects.floor, 2.5
+def test_gamma_and_f_star_follow_from_the_floor():
+    """Computed from the built scene by other formulas: the largest acceleration of the floor, and
+    the time of its fall through the depth."""
+    experiment = settings()
+    floor, g = build(experiment, 0.7, 0.35).effects.floor, 2.5
     omega = 2.0 * math.pi / floor.period
     heights = [type(floor).hooks.displacement(floor, t * floor.period) for t in (0.0, 0.5)]
     assert 0.5 * (heights[1] - heights[0]) * omega**2 == pytest.approx(3.0 * g)
     falls = math.sqrt(2.0 * 2.0 * 5.42 / g)
     assert falls / math.sqrt(2.0) / floor.period == pytest.approx(0.44)
-    assert found["effects"]["floor"]["wave"] == "sine"
-    assert found["box"] == [20, 20, "open"]
-    assert build(found, 0.7, 0.35).lists
+    assert experiment["effects"]["floor"]["wave"] == "sine"
+    assert experiment["box"] == [20, 20, "open"]
+    assert build(experiment, 0.7, 0.35).lists
     period = floor.period
-    lengths = [found["schedule"][key] for key in ("equilibrate", "measure", "sample_every")]
+    lengths = [experiment["schedule"][key] for key in ("equilibrate", "measure", "sample_every")]
     assert lengths == pytest.approx([40 * period, 8 * period, period / 32])
-    assert found["schedule"]["period"] == pytest.approx(4 * period)
-    schedule.check(found)
+    assert experiment["schedule"]["period"] == pytest.approx(4 * period)
+    protocols.check_experiment(experiment)
 
 
-def test_settings_that_have_been_read_are_read_as_they_are():
-    found = settings()
-    assert config.validated(found, "again") == found
-    assert config.changed_by(found, {})["layer"] == found["layer"]
+def test_reading_of_read_settings_changes_nothing():
+    experiment = settings()
+    assert WrittenExperiment(experiment).experiment("again").raw == experiment
+    assert WrittenExperiment(experiment).changed({}).raw["layer"] == experiment["layer"]
 
 
-def test_a_change_of_the_layer_changes_all_that_follows():
-    """The same as if it had been given so; also of gravity."""
-    whole = config.fitted(config.changed_by(settings(), {"layer": {"gamma": 6, "width": 7}}), "x")
-    assert whole == settings(gamma=6, width=7)
+def test_a_change_of_the_layer_changes_the_derived_settings():
+    """As if it had been set so; also for gravity."""
+    changed = (
+        WrittenExperiment(settings()).changed({"layer": {"gamma": 6, "width": 7}}).fitted("x").raw
+    )
+    assert changed == settings(gamma=6, width=7)
     heavy = {"effects": {"gravity": {"acceleration": 1.0}}}
-    light = config.fitted(config.changed_by(settings(), heavy), "x")
+    light = WrittenExperiment(settings()).changed(heavy).fitted("x").raw
     assert light["effects"]["floor"]["period"] == pytest.approx(
         math.sqrt(2.5) * settings()["effects"]["floor"]["period"]
     )
@@ -63,8 +66,8 @@ def test_a_change_of_the_layer_changes_all_that_follows():
 def test_cases_of_a_layer_have_floors_of_their_own():
     cases = {"b": {"layer": {"f_star": 0.44}}, "g": {"layer": {"gamma": 6, "f_star": 0.84}}}
     sweep = {"r": ["0.7"], "beta": ["0.35"], "seeds": 1, "case": cases}
-    found = config.every_variant("x", settings() | {"sweep": sweep})
-    b, g = found["x/caseb"]["effects"]["floor"], found["x/caseg"]["effects"]["floor"]
+    variants = WrittenExperiment(settings() | {"sweep": sweep}).every_variant("x")
+    b, g = (variants[f"x/case{name}"].raw["effects"]["floor"] for name in "bg")
     assert b == settings()["effects"]["floor"]
     assert g["period"] == pytest.approx(b["period"] * 0.44 / 0.84)
     assert g["amplitude"] == pytest.approx(b["amplitude"] * 2.0 * (0.44 / 0.84) ** 2)

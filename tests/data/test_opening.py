@@ -1,10 +1,11 @@
-"""Files that are opened: damaged ones, those of others, and numbers that cannot be."""
+"""Opening of damaged files, of files of other programs, and of impossible numbers."""
 
 import fcntl
 import math
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import netCDF4
@@ -12,34 +13,34 @@ import pytest
 from synthetic import reduced
 from tests.entry import main
 
-from roughgas.accuracy.running import read_studies
 from roughgas.base import InputError
-from roughgas.data.netcdf import DamagedError, opened, read_netcdf
+from roughgas.data.netcdf import DamagedError, append_checksum, opened, read_groups, read_netcdf
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 
-READERS = {"point": read_point, "reduced": read_reduced, "studies": read_studies}
+PAPER = Path(__file__).parents[2] / "studies" / "paper"
+READERS = {"point": read_point, "reduced": read_reduced, "studies": read_groups}
 
 
-@pytest.mark.parametrize("wanted", READERS)
+@pytest.mark.parametrize("expected", READERS)
 @pytest.mark.parametrize("kind", READERS)
-def test_a_reader_takes_its_own_kind_alone(files, kind, wanted):
-    if kind == wanted:
-        READERS[wanted](files[kind])
+def test_a_reader_takes_its_kind_of_file_alone(files, kind, expected):
+    if kind == expected:
+        READERS[expected](files[kind])
     else:
         with pytest.raises(InputError, match=r"must be a .*, not a "):
-            READERS[wanted](files[kind])
+            READERS[expected](files[kind])
 
 
 @pytest.mark.parametrize("kind", READERS)
 def test_every_flipped_byte_and_every_cut_is_noticed(files, kind, tmp_path):
     content = files[kind].read_bytes()
     path = tmp_path / "spoiled.nc"
-    for at in range(0, len(content) - 100, max(1, len(content) // 50)):
-        path.write_bytes(content[:at] + bytes([content[at] ^ 0x10]) + content[at + 1 :])
+    for index in range(0, len(content) - 100, max(1, len(content) // 50)):
+        path.write_bytes(content[:index] + bytes([content[index] ^ 0x10]) + content[index + 1 :])
         with pytest.raises(DamagedError), opened(path):
             pass
-        path.write_bytes(content[:at])
+        path.write_bytes(content[:index])
         with pytest.raises(InputError), opened(path):
             pass
 
@@ -53,8 +54,8 @@ def test_a_file_that_claims_to_be_huge_is_refused_before_it_is_read(tmp_path):
         read_netcdf(tmp_path / "huge.nc")
 
 
-def damaged(files, path):
-    """A point whose checksum proves that a byte has changed."""
+def write_damaged(files, path):
+    """Write a point whose checksum proves a changed byte, and return its path."""
     content = bytearray(files["point"].read_bytes())
     content[len(content) // 2] ^= 0x10
     path.write_bytes(content)
@@ -62,7 +63,7 @@ def damaged(files, path):
 
 
 def test_a_workflow_puts_a_damaged_point_aside(files, tmp_path, capsys):
-    path = damaged(files, tmp_path / "seed1.nc")
+    path = write_damaged(files, tmp_path / "seed1.nc")
     command = ["reduce", str(path), "-o", str(tmp_path / "all.nc"), "--put-aside"]
     assert main(command) == 2
     (line,) = capsys.readouterr().err.splitlines()
@@ -71,7 +72,7 @@ def test_a_workflow_puts_a_damaged_point_aside(files, tmp_path, capsys):
 
 
 def foreign(files, path):
-    """A dataset of another program."""
+    """Write a dataset of another program."""
     with netCDF4.Dataset(path, "w") as file:
         file.createDimension("x", 3)
 
@@ -81,7 +82,7 @@ def cut_off(files, path):
 
 
 def no_file(files, path):
-    """A folder in place of a file."""
+    """Make a folder in place of a file."""
     path.mkdir()
 
 
@@ -98,7 +99,7 @@ def test_nothing_is_renamed_without_a_checksum_that_proves_the_damage(
 
 
 def test_outside_a_workflow_nothing_is_renamed(files, tmp_path, capsys):
-    path = damaged(files, tmp_path / "seed1.nc")
+    path = write_damaged(files, tmp_path / "seed1.nc")
     assert main(["reduce", str(path), "-o", str(tmp_path / "all.nc")]) == 2
     assert "it is damaged" in capsys.readouterr().err
     assert path.exists()
@@ -139,7 +140,7 @@ def test_a_point_that_another_process_may_be_writing_is_left_alone(holder, tmp_p
     assert [file.name for file in tmp_path.iterdir()] == ["seed1.nc"]
 
 
-def test_a_dataset_without_what_a_summary_quotes_is_refused(files, tmp_path, capsys):
+def test_a_dataset_without_the_settings_of_its_summary_is_refused(files, tmp_path, capsys):
     unquoted = tmp_path / "task.nc"
     shutil.copyfile(files["point"].with_name("task.nc"), unquoted)
     with netCDF4.Dataset(unquoted, "a") as file:
@@ -150,8 +151,10 @@ def test_a_dataset_without_what_a_summary_quotes_is_refused(files, tmp_path, cap
 
 
 @pytest.mark.parametrize(("name", "value"), [("R", math.nan), ("R", -0.1), ("E_trans", math.inf)])
-@pytest.mark.parametrize("command", ["table {} -o out.csv", "figure fig2a {} -o out.png"])
-def test_nothing_is_made_of_a_reduced_dataset_with_one(
+@pytest.mark.parametrize(
+    "command", ["table {} -o out.csv", f"figure {PAPER} fig2a {{}} --shows sheared -o out.png"]
+)
+def test_nothing_is_made_of_a_reduced_dataset_with_an_impossible_number(
     tmp_path, capsys, monkeypatch, command, name, value
 ):
     monkeypatch.chdir(tmp_path)
@@ -161,12 +164,95 @@ def test_nothing_is_made_of_a_reduced_dataset_with_one(
     assert main(command.format("sheared.nc").split()) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert f"{name} of sheared.nc = {value}: must lie in" in line
-    assert [one.name for one in tmp_path.iterdir()] == ["sheared.nc"]
+    assert [file.name for file in tmp_path.iterdir()] == ["sheared.nc"]
 
 
-def test_places_without_seeds_have_no_numbers(tmp_path, monkeypatch):
+def test_grid_points_without_seeds_need_no_numbers(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     data = reduced("sheared")
     data["n_seeds"][1, 3], data["R"][1, 3] = 0, math.nan
     data.to_netcdf("sheared.nc")
     assert main(["table", "sheared.nc", "-o", "out.csv"]) == 0
+
+
+def test_a_file_that_hdf5_reads_for_ever_is_given_up(files, monkeypatch):
+    """HDF5 follows some chains of damaged blocks in a circle."""
+    never = threading.Event()
+    monkeypatch.setattr(netCDF4, "Dataset", lambda *_, **__: never.wait())
+    monkeypatch.setattr("roughgas.data.netcdf.OPENING_TIMEOUT", 0.1)
+    with pytest.raises(
+        InputError, match=r"must be a dataset of roughgas: HDF5 reads it for 0\.1 s"
+    ):
+        read_point(files["point"])
+    never.set()
+
+
+def test_a_file_with_unreadable_attributes_is_no_dataset(files, monkeypatch):
+    """netCDF reads them late, and has an AttributeError for them."""
+
+    def fail(file):
+        raise AttributeError("NetCDF: Can't open HDF5 attribute")
+
+    monkeypatch.setattr("roughgas.data.netcdf.attributes_of", fail)
+    with pytest.raises(InputError, match="be a dataset of roughgas: it is of another program, or"):
+        read_point(files["point"])
+
+
+def write_edited(files, kind, path, edit):
+    """Write an edited dataset with its new checksum."""
+    shutil.copyfile(files[kind], path)
+    with netCDF4.Dataset(path, "a") as file:
+        edit(file)
+    append_checksum(path)
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_a_dataset_that_cannot_be_decoded_is_refused(files, tmp_path, kind):
+    def edit(file):
+        group = next(iter(file.groups.values()), file)
+        next(iter(group.variables.values())).setncattr("scale_factor", "x")
+
+    write_edited(files, kind, tmp_path / "file.nc", edit)
+    with pytest.raises(InputError, match=r"file\.nc: must hold what can be decoded: "):
+        READERS[kind](tmp_path / "file.nc")
+
+
+def test_a_fault_over_an_intact_dataset_states_its_location(files, tmp_path, capsys):
+    path = tmp_path / "studies.nc"
+    write_edited(files, "studies", path, lambda file: file["coverage"].delncattr("title"))
+    outputs = [f"--{ending}={tmp_path / ending}" for ending in ("json", "markdown")]
+    assert main(["claims", str(PAPER), str(path), "--title", "a", *outputs]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "as it wrote it: KeyError: 'title' (__init__.py:" in line
+    assert line.endswith("; if it does, report this line)")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["studies.nc"]
+
+
+def test_errors_of_any_type_over_a_dataset_end_in_one_line(files, monkeypatch, capsys):
+    """Such as errors of pandas, over an axis with a duplicate value."""
+
+    class InvalidIndexError(Exception):
+        pass
+
+    def fail(*_):
+        raise InvalidIndexError("twice")
+
+    monkeypatch.setattr("roughgas.cli.show.print_summaries", fail)
+    assert main(["show", str(files["reduced"])]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "InvalidIndexError: twice (test_opening.py:" in line
+
+
+def test_a_fault_without_a_dataset_shows_its_trace(monkeypatch):
+    monkeypatch.setattr("roughgas.cli.experiments.print_experiments", lambda *_: {}["x"])
+    with pytest.raises(KeyError):
+        main(["experiments"])
+
+
+@pytest.mark.parametrize("name", ["R", "n_seeds"])
+def test_numbers_that_are_text_are_refused(tmp_path, name):
+    data = reduced("sheared")
+    data[name].astype(str).to_dataset().to_netcdf(tmp_path / "sheared.nc")
+    data.drop_vars(name).to_netcdf(tmp_path / "sheared.nc", mode="a")
+    with pytest.raises(InputError, match=rf"^{name} of .* = of type .*: must be real numbers"):
+        read_reduced(tmp_path / "sheared.nc")

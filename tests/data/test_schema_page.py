@@ -1,4 +1,4 @@
-"""Versions of the schema, and what files hold besides variables."""
+"""Versions of the schema, and contents of files besides variables."""
 
 import shutil
 import time
@@ -6,9 +6,8 @@ import time
 import netCDF4
 import pytest
 import xarray as xr
-from tests.files import point
+from tests.files import combined_coverage, point
 
-from roughgas.accuracy.running import combine
 from roughgas.base import InputError
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point
@@ -30,7 +29,7 @@ def test_a_file_holds_no_date(tmp_path):
         ("point", lambda path: reduce_points([path], path.with_name("reduced.nc"))),
         ("reduced", read_reduced),
         ("studies", lambda path: read_netcdf(path, group="coverage")),
-        ("task", lambda path: combine([path], output=path.with_name("studies.nc"))),
+        ("task", lambda path: combined_coverage(path, path.with_name("studies.nc"))),
     ],
 )
 def test_every_reader_refuses_a_newer_schema_in_one_line(files, tmp_path, kind, read):

@@ -1,20 +1,22 @@
-"""Floors that move as a sawtooth, a sine and a triangle; walls."""
+"""Motion of floors (sawtooth, sine, triangle) and reflection by walls."""
 
 import numpy as np
 import pytest
 from brute_force import begin, run, scene_of, settings, snapshot
-from brute_force.beside import brute_force_from
+from brute_force.comparison import brute_force_from
 from compiled import from_python
+from slow_cases import slow_but
 
-from roughgas.effects import motions
+from roughgas.base.fields import read_each
+from roughgas.effects import EFFECTS, build_effects, motions
 from roughgas.effects.motions import Sine, sawtooth, triangle
-from roughgas.effects.settings import SceneContext, make
-from roughgas.effects.walls import Floor
+from roughgas.effects.settings import SceneContext
 from roughgas.kernel.hooks import displacement
-from roughgas.kernel.memory import new_state
+from roughgas.kernel.layout import new_state
 
 
-def one_particle(height, velocity, **floor):
+def particle_above_floor(height, velocity, **floor):
+    """Scene and state of a particle above a floor."""
     experiment = settings("bed", 1, [10, "open"], floor=floor)
     scene, _ = begin(experiment, 1.0, 0.0)
     position = np.array([[3.0, height]])
@@ -25,13 +27,16 @@ time_to_sine = from_python(motions.time_to_sine)
 search_sine = from_python(motions.search_sine)
 
 
-SPIN = {"spin": {"inertia": 0.5}}
+SPIN = read_each(EFFECTS, {"spin": {"inertia": 0.5}}, "effects")
 
 
-def from_settings(**chosen):
+def floor_from_settings(**parameters):
+    """The Floor of these settings."""
     stated = {"amplitude": 5, "period": 2, "restitution": "particles", "roughness": 0.5}
-    around = SceneContext((50.0, None), 0.9, 0.2, SPIN)
-    return make(Floor, "floor", stated | chosen, around)
+    context = SceneContext((50.0, None), 0.9, 0.2, SPIN)
+    return build_effects(read_each(EFFECTS, {"floor": stated | parameters}, "effects"), context)[
+        "floor"
+    ]
 
 
 def test_the_wave_is_chosen_by_name():
@@ -43,18 +48,19 @@ def test_the_wave_is_chosen_by_name():
         "reversed_sawtooth": triangle(5.0, 2.0, 0.1),
     }
     for wave, motion in forms.items():
-        floor = from_settings(wave=wave)
+        floor = floor_from_settings(wave=wave)
         assert floor.motion == motion and type(floor.motion) is type(motion)
         assert (floor.restitution, floor.roughness) == (0.9, 0.5)
 
 
-# each of the others compiles a kernel
-WAVES = [pytest.param(one, marks=[pytest.mark.slow] * (one != "sawtooth")) for one in motions.WAVES]
+# each other wave compiles a kernel
+FORMS = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
+WAVES = slow_but({"sawtooth"}, FORMS)
 
 
 @pytest.mark.parametrize("wave", WAVES)
 def test_a_phase_is_a_start_in_the_middle_of_a_period(wave):
-    """The same collisions as brute force makes that starts so much later: 200 of them."""
+    """The same 200 collisions as of a brute force that starts at the later time."""
     floor = {"amplitude": 1.0, "period": 1.7, "wave": wave, "restitution": 0.9, "roughness": 0.5}
     experiment = settings("bed", 16, [10, "open"], floor=floor)
     _, world = scene_of(experiment, 0.9, 0.2)
@@ -76,31 +82,31 @@ def test_a_phase_is_a_start_in_the_middle_of_a_period(wave):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99, 1.01])
 def test_a_search_that_ends_early_has_passed_no_meeting(share):
-    """It goes on from the start of the path, and so finds the same bits as if it had not ended."""
-    scene, _ = one_particle(21.3, (0.3, 0.0), wave="sine")
+    """A limited search ends between its limit and the meeting, or finds the meeting."""
+    scene, _ = particle_above_floor(21.3, (0.3, 0.0), wave="sine")
     fall = (scene.effects.floor.motion, 1.0, 20.3, 0.0, 0.0)
     meeting, _ = time_to_sine(*fall)
     limit = share * meeting
-    time, what = search_sine(*fall, limit)
+    time, outcome = search_sine(*fall, limit)
     if share > 1.0:
-        assert (time, what) == (meeting, motions.MEET)
+        assert (time, outcome) == (meeting, motions.MEETING)
     else:
-        assert limit <= time < meeting and what == motions.LOOK
+        assert limit <= time < meeting and outcome == motions.SEARCH_AGAIN
 
 
-def thrown(velocity, spin=0.0, **walls):
-    """One particle 100 a above the floor of a bed 12 a wide."""
+def particle_between_walls(velocity, spin=0.0, **walls):
+    """Scene and state of a particle 100 a above the floor of a bed 12 a wide."""
     scene, _ = begin(settings("walled", 1, [12, "open"], walls=walls), 0.9, 0.0)
     position = np.array([[6.0, 100.0]])
     return scene, new_state(scene, position, np.array([velocity]), np.array([[spin]]))
 
 
 def test_a_smooth_elastic_wall_reflects():
-    scene, state = thrown((3.0, 0.0), 0.8, restitution=1.0, roughness=-1.0)
+    scene, state = particle_between_walls((3.0, 0.0), 0.8, restitution=1.0, roughness=-1.0)
     for k in range(1, 100):
         run(state, scene, 1, interval=0.1)
         shot = snapshot(state, scene)
-        folded = (5.0 + 0.3 * k) % 20.0  # the particle's room is 10 a wide: x - 1 unfolds to that
+        folded = (5.0 + 0.3 * k) % 20.0  # x - 1 runs over a width of 10 a: unfolded position
         assert shot.position[0, 0] - 1.0 == pytest.approx(min(folded, 20.0 - folded), abs=1e-12)
         assert abs(shot.velocity[0, 0]) == pytest.approx(3.0, rel=1e-14)
         assert shot.spin[0, 0] == 0.8

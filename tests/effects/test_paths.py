@@ -1,24 +1,22 @@
-"""Paths through periodic boundaries, and rotations: counted in the kernel, beside brute force."""
+"""Displacements through periodic boundaries, and rotations, against the brute force."""
 
 import numpy as np
 import pytest
 from brute_force import begin, run, scene_of, settings, snapshot
-from brute_force.beside import brute_force_from
+from brute_force.comparison import brute_force_from
+from raw import build, run_point, start_gas, state_from
 from schedules import STEADY
+from slow_cases import slow_but
 
 from roughgas.data.point import as_dataset
-from roughgas.effects import KINDS
+from roughgas.effects import EFFECTS
 from roughgas.effects.paths import Paths
 from roughgas.kernel.state import EXPONENT
-from roughgas.scene import build
-from roughgas.simulation.change import change
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
-from roughgas.simulation.point import run_point
-from roughgas.simulation.restart import state_from
-from roughgas.simulation.saved import initial_of
+from roughgas.simulation.free_flight import in_starting_order, rotations, unwrapped_positions
+from roughgas.simulation.saved_states import initial_states_of
+from roughgas.simulation.scene_switch import switch_scene
 
-TINY = 1e-9
+TOLERANCE = 1e-9
 MIXTURE = {
     "species": [
         {"name": "small", "number": 4, "radius": 1.0},
@@ -37,16 +35,17 @@ GASES = {
 
 
 def with_paths(experiment):
+    """The experiment with the effect `paths`."""
     return experiment | {"effects": experiment["effects"] | {"paths": {}}}
 
 
-def renumber(state):
-    """Number the particles in another order than memory has them, as a lattice does not."""
+def permute_labels(state):
+    """Give the particles labels in random order; on a lattice labels follow the order of memory."""
     state.label[:] = np.random.default_rng(4).permutation(len(state.label))
 
 
 class BruteForcePath:
-    """Adds up the displacement and the rotation of each flight of a brute-force simulation."""
+    """Sums of displacements and rotations over the flights of a brute-force simulation."""
 
     def __init__(self, brute):
         self.brute, self.move = brute, brute._move
@@ -61,14 +60,17 @@ class BruteForcePath:
         self.move(duration)
 
 
-@pytest.mark.parametrize("name", GASES)
-def test_displacements_and_rotations_are_those_of_each_flight_of_a_brute_force(name):
-    """Instants are far apart, and some particles cross the box in between."""
+QUICK_GASES = {"heated", "sheared", "bed", "bath", "spheres"}
+
+
+@pytest.mark.parametrize("name", slow_but(QUICK_GASES, GASES))
+def test_displacements_and_rotations_are_those_of_the_brute_force(name):
+    """Particles cross the box between two instants."""
     experiment, beta = GASES[name]
     experiment = with_paths(experiment) | {"schedule": STEADY}
     scene, world = scene_of(experiment, 0.9, beta)
     scene, state = begin(experiment, 0.9, beta, 7)
-    renumber(state)
+    permute_labels(state)
     state.trajectory[:, len(scene.box) : -1] *= 8.0  # fast: many crossings before chaos grows
     first = unwrapped_positions(state, scene)
     brute = brute_force_from(world, snapshot(state, scene))
@@ -78,16 +80,18 @@ def test_displacements_and_rotations_are_those_of_each_flight_of_a_brute_force(n
         run(state, scene, 1, interval=time - brute.time)
         brute.run_until(time)
         displacement = (unwrapped_positions(state, scene) - first)[:, axes]
-        assert displacement == pytest.approx(path.displacement[:, axes], abs=TINY)
+        assert displacement == pytest.approx(path.displacement[:, axes], abs=TOLERANCE)
         if len(scene.box) == 2:
-            assert rotations(state) == pytest.approx(path.rotation, abs=TINY)
+            assert rotations(state) == pytest.approx(path.rotation, abs=TOLERANCE)
     assert np.any(state.paths.crossings[:, axes])
     assert rotations(state) is None or np.abs(rotations(state)).max() > 0.5
 
 
 def dense_path(gas, advance, samples):
-    """Displacements (N, D), the sum of steps so short that nearest images are the right ones; along
-    the flow of a sheared gas they are not."""
+    """Displacements (N, D), summed over steps so short that the nearest image is the true one.
+
+    Along the flow of a sheared gas it is not.
+    """
     before = gas.positions_and_velocities()[0][np.argsort(gas.state.label)]
     lengths = [length or np.inf for length in gas.scene.box]
     total = np.zeros_like(before)
@@ -104,60 +108,62 @@ def dense_path(gas, advance, samples):
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "box"), [(16, [12, 12]), (900, [80, 80])])
-def test_paths_are_those_of_dense_observations_also_where_particles_are_sorted_anew(number, box):
-    """900 particles lie in cells, and their order in memory changes; the paths span 30 T."""
+def test_paths_are_those_of_dense_observations_even_if_particles_are_sorted_anew(number, box):
+    """Paths of 30 T; 900 particles are in cells, and their order in memory changes."""
     experiment = with_paths(settings("shaken" if number < 500 else "sheared", number, box))
-    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    gas = start_gas(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
     first, order = unwrapped_positions(gas.state, gas.scene), gas.state.label.copy()
     total = dense_path(gas, lambda: gas.in_time(0.5, 1), 60)
     displacement = unwrapped_positions(gas.state, gas.scene) - first
-    assert displacement[:, 1] == pytest.approx(total[:, 1], abs=TINY)
+    assert displacement[:, 1] == pytest.approx(total[:, 1], abs=TOLERANCE)
     assert np.count_nonzero(gas.state.paths.crossings[:, 1]) > number / 40
     assert number < 500 or not np.array_equal(gas.state.label, order)
 
 
-def test_paths_go_on_where_a_cooling_gas_is_refreshed():
+def test_paths_continue_through_refreshes_of_a_cooling_gas():
     """Each refresh brings all particles into the box, and changes the units of time and spin."""
     experiment = with_paths(settings("spheres", 40, [12, 12, 12]))
-    gas = Gas.start(build(experiment, 0.6, 0.3), experiment, np.random.default_rng(1))
+    gas = start_gas(build(experiment, 0.6, 0.3), experiment, np.random.default_rng(1))
     gas.cool(40)
-    gas.look()
+    gas.sample_now()
     first = unwrapped_positions(gas.state, gas.scene)
     total = dense_path(gas, lambda: gas.step(np.inf, 5), 160)
     displacement = unwrapped_positions(gas.state, gas.scene) - first
     assert gas.state.counts[EXPONENT] < -2
     assert np.any(gas.state.paths.crossings, axis=1).sum() > 10
-    assert displacement == pytest.approx(total, abs=TINY)
+    assert displacement == pytest.approx(total, abs=TOLERANCE)
 
 
-def test_paths_go_on_through_thermal_walls():
-    """They send particles off at other velocities, along a periodic axis of the box as well."""
+@pytest.mark.slow
+def test_paths_continue_through_thermal_walls():
+    """Thermal walls change velocities along a periodic axis of the box as well."""
     walled = settings("container", 16, [14, 14])
     walled["effects"] = {"spin": {"inertia": 0.5}, "bottom_wall": {"temperature": 2.0}, "lid": {}}
     experiment = with_paths(walled)
-    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    gas = start_gas(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
     first = unwrapped_positions(gas.state, gas.scene)
     total = dense_path(gas, lambda: gas.in_time(0.25, 1), 400)
     displacement = unwrapped_positions(gas.state, gas.scene) - first
-    assert displacement == pytest.approx(total, abs=TINY)
+    assert displacement == pytest.approx(total, abs=TOLERANCE)
     assert np.any(gas.state.paths.crossings[:, 0])
 
 
-def test_paths_go_on_where_a_stage_changes_the_scene():
-    """The change brings all particles into the box, some of them from other images."""
+def test_paths_continue_through_a_change_of_the_scene():
+    """The change folds all particles into the box, some of them from other images."""
     experiment = with_paths(settings("heated", 40, [30, 30]))
-    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
-    renumber(gas.state)
+    gas = start_gas(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    permute_labels(gas.state)
     crossed = np.zeros(40, bool)
     for power in 20 * (3.0, 1.0):
         gas.in_time(1.0, 1)
-        path, turned = unwrapped_positions(gas.state, gas.scene), rotations(gas.state)
+        path, angles = unwrapped_positions(gas.state, gas.scene), rotations(gas.state)
         counted = gas.state.paths.crossings.copy()
-        other = with_paths(settings("heated", 40, [30, 30], thermostat={"power": power}))
-        change(gas, build(other, 0.9, 0.3), gas.time)
-        assert unwrapped_positions(gas.state, gas.scene) == pytest.approx(path, abs=TINY)
-        assert rotations(gas.state) == pytest.approx(turned, abs=TINY)
+        changed = with_paths(settings("heated", 40, [30, 30], thermostat={"power": power}))
+        switch_scene(gas, build(changed, 0.9, 0.3), gas.time)
+        assert unwrapped_positions(gas.state, gas.scene) == pytest.approx(path, abs=TOLERANCE)
+        assert rotations(gas.state) == pytest.approx(angles, abs=TOLERANCE)
         crossed |= np.any(counted != gas.state.paths.crossings, axis=1)
     assert np.count_nonzero(crossed) > 4
 
@@ -172,19 +178,19 @@ def test_a_run_that_counts_paths_has_the_bits_of_one_that_does_not():
     assert states[0].paths is None and states[1].paths is not None
     assert states[0].trajectory.tobytes() == states[1].trajectory.tobytes()
     assert states[0].ledger.tobytes() == states[1].ledger.tobytes()
-    assert KINDS["paths"] is Paths
+    assert EFFECTS["paths"] is Paths
 
 
-def test_rotations_of_a_run_that_goes_on_begin_at_zero():
-    """In the middle of flights, which began before."""
+def test_rotations_of_a_continued_run_begin_at_zero():
+    """Flights that began before the continuation count from its start."""
     experiment = settings("sheared", 16, [20, 20]) | {"schedule": STEADY, "keep_state": True}
     point = run_point(build(experiment, 0.9, 0.3), experiment, 5)
-    about = {"experiment": "x", "scale": "small"} | point.attributes
-    (initial,) = initial_of(as_dataset(point._replace(attributes=about)))
+    attributes = {"experiment": "x", "scale": "small"} | point.attributes
+    (initial,) = initial_states_of(as_dataset(point._replace(attributes=attributes)))
     scene = build(with_paths(experiment), 0.9, 0.3)
     state, begun, _ = state_from(initial, scene, experiment, np.random.default_rng(0))
-    assert begun is not None  # with its memory, though that run counted no paths
+    assert begun is not None  # the memory is used, though that run counted no paths
     assert np.all(rotations(state) == 0.0)
-    spin = in_order(state, state.spin[:, 0])
+    spin = in_starting_order(state, state.spin[:, 0])
     run(state, scene, 1, interval=1e-6)
     assert rotations(state) == pytest.approx(spin * 1e-6, rel=1e-6)

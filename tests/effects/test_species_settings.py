@@ -1,4 +1,4 @@
-"""What settings of species mean, and what is refused in one line."""
+"""Settings of species and their meaning; files of radii that are refused."""
 
 import gzip
 import os
@@ -9,28 +9,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 from brute_force import begin, settings
-
-from roughgas.effects.species import mixture_of, packing
+from raw import mixture_of, packing
 
 HALVES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}]
 
 
 def gas(species, pairs=None, particles=40, box=(40, 40), effects=None):
-    found = settings("gas", particles, list(box)) | {"species": species}
-    found |= {"species_pairs": pairs} if pairs else {}
-    return found | {"effects": effects or found["effects"]}
+    """Settings of a gas of these species."""
+    experiment = settings("gas", particles, list(box)) | {"species": species}
+    experiment |= {"species_pairs": pairs} if pairs else {}
+    return experiment | {"effects": effects or experiment["effects"]}
 
 
-def bodies(species, particles=40, **more):
-    return begin(gas(species, particles=particles, **more), 0.9, 0.3, seed=1)[1].bodies
+def bodies(species, particles=40, **changes):
+    """The bodies of the initial state of a gas of these species."""
+    return begin(gas(species, particles=particles, **changes), 0.9, 0.3, seed=1)[1].bodies
 
 
-def test_mass_is_that_of_the_same_stuff_and_inertia_the_scenes():
-    found = bodies([*HALVES[:1], {"fraction": 0.5, "radius": 2, "inertia": 0.3}])
-    assert np.bincount(found.species).tolist() == [20, 20]
-    assert np.array_equal(found.radius, 1.0 + found.species)
-    assert np.array_equal(found.mass, found.radius**2)
-    assert np.array_equal(found.inertia, np.where(found.species == 0, 0.5, 0.3))
+def test_masses_default_to_equal_density_and_inertia_to_the_scene():
+    mixture = bodies([*HALVES[:1], {"fraction": 0.5, "radius": 2, "inertia": 0.3}])
+    assert np.bincount(mixture.species).tolist() == [20, 20]
+    assert np.array_equal(mixture.radius, 1.0 + mixture.species)
+    assert np.array_equal(mixture.mass, mixture.radius**2)
+    assert np.array_equal(mixture.inertia, np.where(mixture.species == 0, 0.5, 0.3))
 
 
 def test_fractions_are_rounded_so_that_all_particles_have_a_species():
@@ -40,7 +41,7 @@ def test_fractions_are_rounded_so_that_all_particles_have_a_species():
     assert [kind.number for kind in mixture_of(gas(thirds, particles=10)).kinds] == [1, 2, 7]
 
 
-def test_pairs_have_the_mean_unless_they_are_given():
+def test_pairs_have_the_mean_material_unless_they_state_their_own():
     species = [
         {"name": "a", "fraction": 0.5, "restitution": 0.7},
         {"fraction": 0.5, "roughness": 1},
@@ -54,35 +55,35 @@ def test_pairs_have_the_mean_unless_they_are_given():
 
 
 @pytest.mark.parametrize(("name", "deviation"), [("uniform", 0.2), ("lognormal", 0.1)])
-def test_radii_that_are_drawn_have_the_mean_and_the_deviation(name, deviation):
+def test_random_radii_have_the_stated_mean_and_deviation(name, deviation):
     spread = {"distribution": name, "mean": 1.5, "deviation": deviation}
     species = [{"fraction": 1, "radius": spread}]
-    one = bodies(species, particles=2000, box=(300, 300))
-    found, error = one.radius / 1.5, deviation / np.sqrt(2000)
-    assert abs(found.mean() - 1.0) < 4.0 * error
-    assert abs(found.std() - deviation) < 4.0 * error
+    drawn = bodies(species, particles=2000, box=(300, 300))
+    relative_radii, error = drawn.radius / 1.5, deviation / np.sqrt(2000)
+    assert abs(relative_radii.mean() - 1.0) < 4.0 * error
+    assert abs(relative_radii.std() - deviation) < 4.0 * error
     again = bodies(species, particles=2000, box=(300, 300))
-    assert np.array_equal(one.radius, again.radius)
-    assert np.array_equal(one.mass, one.radius**2)
+    assert np.array_equal(drawn.radius, again.radius)
+    assert np.array_equal(drawn.mass, drawn.radius**2)
     expected = packing(gas(species, particles=2000, box=(300, 300)))
-    covered = np.pi * np.sum(one.radius**2) / 300**2
+    covered = np.pi * np.sum(drawn.radius**2) / 300**2
     assert covered == pytest.approx(expected, rel=0.02)
 
 
-def test_radii_from_a_list_and_from_a_file(tmp_path):
+def test_radii_are_read_from_a_list_and_from_a_file(tmp_path):
     listed = [0.5, 1.0, 1.25]
     (tmp_path / "radii").write_text("0.5\n1.0\n1.25\n")
-    one = bodies([{"fraction": 1, "radius": listed}])
+    from_list = bodies([{"fraction": 1, "radius": listed}])
     file = {"distribution": "file", "file": str(tmp_path / "radii")}
-    other = bodies([{"fraction": 1, "radius": file}])
-    assert set(one.radius) == set(listed)
-    assert np.array_equal(one.radius, other.radius)
-    exactly = bodies([{"fraction": 1, "radius": listed}], particles=3)
-    assert sorted(exactly.radius) == listed
+    from_file = bodies([{"fraction": 1, "radius": file}])
+    assert set(from_list.radius) == set(listed)
+    assert np.array_equal(from_list.radius, from_file.radius)
+    of_three = bodies([{"fraction": 1, "radius": listed}], particles=3)
+    assert sorted(of_three.radius) == listed
 
 
 @pytest.mark.parametrize("kind", ["endless", "pipe", "archive", "too large", "empty", "folder"])
-def test_radii_come_from_text_files_of_an_end(tmp_path, kind):
+def test_files_of_radii_must_be_text_of_limited_size(tmp_path, kind):
     path = Path("/dev/zero") if kind == "endless" else tmp_path / "radii.gz"
     if kind == "pipe":
         os.mkfifo(path)

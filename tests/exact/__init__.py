@@ -1,6 +1,6 @@
-"""The same physics in fifty digits, and the means to run it beside the kernel."""
+"""The same physics in fifty digits, and comparisons of it with the kernel."""
 
-from exact.beside import Segment, exactly, segment, separation
+from exact.comparison import Segment, exactly, segment, separation
 from exact.simulation import Event, Exact
 
 __all__ = ["Event", "Exact", "Segment", "exactly", "segment", "separation"]

@@ -7,14 +7,17 @@ BELOW = tuple(map(Decimal, ("0.326", "1.148", "2.983", "3.583", "1")))
 
 
 def restitution(world, r, speed):
-    """Of a contact at a normal speed, from the restitution that its material has by itself."""
+    """Return the restitution of a contact at a normal speed, from the restitution of its
+    material."""
     if world.viscous and 0 < r < 1 and speed > 0:
         ratio = speed / Decimal(world.viscous)
         r = _pade(_x_of(r) * ratio ** Decimal("0.2"))
     if world.table:
         speeds, values = (tuple(map(Decimal, column)) for column in world.table[:2])
-        lost, whole = (1 - _between(speeds, values, v) for v in (speed, Decimal(world.table[2])))
-        r = max(Decimal(0), 1 - (1 - r) * lost / whole)
+        loss, reference_loss = (
+            1 - _between(speeds, values, v) for v in (speed, Decimal(world.table[2]))
+        )
+        r = max(Decimal(0), 1 - (1 - r) * loss / reference_loss)
     if world.threshold and speed < Decimal(world.threshold[0]):
         r = max(r, Decimal(world.threshold[1]))
     return r
@@ -25,14 +28,14 @@ def _pade(x):
 
 
 def _value(coefficients, x):
-    found = Decimal(0)
-    for one in coefficients:
-        found = found * x + one
-    return found
+    total = Decimal(0)
+    for coefficient in coefficients:
+        total = total * x + coefficient
+    return total
 
 
 def _x_of(r):
-    """Where the Pade approximation, which falls, is r: an interval that is cut in halves."""
+    """Return the x at which the Pade approximation, which decreases, equals r, by bisection."""
     low, high = Decimal(0), Decimal(1)
     while _pade(high) > r:
         high *= 2
@@ -43,7 +46,7 @@ def _x_of(r):
 
 
 def _between(at, values, x):
-    """On straight lines between the values, constant beyond them."""
+    """Interpolate linearly between the values, with constants beyond them."""
     if x <= at[0]:
         return values[0]
     for k in range(1, len(at)):

@@ -1,9 +1,9 @@
 """The same physics once more, in fifty digits and plain Python: all pairs, all images, all events.
 
 Written from docs/physics.md. Positions, velocities and spins have three components each, in the
-plane, too. Nobody is ever folded into the box: an event names the image that is met. So another
-simulation that differs very little can be led through the same events (`follow`), each at the time
-at which its own paths have it.
+plane, too. Positions are never wrapped into the box: an event names the image involved. So another
+simulation that differs very little can be led through the same events (`follow`), at the times on
+its own paths.
 """
 
 import decimal
@@ -12,7 +12,7 @@ import math
 from decimal import Decimal
 from typing import NamedTuple
 
-from brute_force.company import Company
+from brute_force.bodies import Bodies
 
 from exact.falling import NEVER, ZERO, exact_side, fall, fall_or_drift
 from exact.laws import restitution
@@ -26,17 +26,17 @@ class Event(NamedTuple):
     kind: str  # pair, floor, left, right
     i: int
     j: int = -1
-    image: tuple[int, int, int] = (0, 0, 0)  # of j: periods along each axis that i sees it off by
+    image: tuple[int, int, int] = (0, 0, 0)  # of j: its shift along each axis in periods
     stroke: int = 0  # of the floor
 
 
 class Exact:
-    """A simulation under way: `step` finds the next event and carries it out."""
+    """A simulation in progress: `step` finds the next event and carries it out."""
 
-    def __init__(self, world, time, x, v, w, last=None, slide=ZERO, company=None):
-        """World as in brute_force; all numbers Decimals, vectors of three of them. `slide`: place
-        at time 0 of the image above a sheared box; `company` as in brute_force where particles
-        differ, but for lists of Decimals."""
+    def __init__(self, world, time, x, v, w, last=None, first_image_shift=ZERO, company=None):
+        """Start from `world` as in brute_force; all numbers are Decimals, and vectors have three
+        components. `first_image_shift` is the shift at time 0 of the image above a sheared box.
+        `company` is as in brute_force where particles differ, with lists of Decimals."""
         self.world = world
         self.time, self.x, self.v, self.w = time, list(x), list(v), list(w)
         self.last = [-NEVER] * len(x) if last is None else list(last)
@@ -45,23 +45,30 @@ class Exact:
         self.periods = [length for length in self.box if length is not None]
         self.r, self.beta, self.q = map(_exact, (world.r, world.beta, world.q))
         self.gravity, self.shear = Decimal(world.gravity), Decimal(world.shear)
-        self.slide = slide
+        self.first_image_shift = first_image_shift
         self.floor, self.walls = (
             tuple(map(Decimal, wall)) if wall else None for wall in (world.floor, world.walls)
         )
-        ones = [Decimal(1)] * len(x)
-        self.company = company or Company(ones, ones, [self.q] * len(x), [0] * len(x))
+        units = [Decimal(1)] * len(x)
+        self.company = company or Bodies(units, units, [self.q] * len(x), [0] * len(x))
         self.sides = {side.name: exact_side(side) for side in world.sides}
         self.contact_time = Decimal(world.contact_time)
         self.stroke = math.floor(time / self.floor[1]) if self.floor else 0
 
     def copy(self):
         return Exact(
-            self.world, self.time, self.x, self.v, self.w, self.last, self.slide, self.company
+            self.world,
+            self.time,
+            self.x,
+            self.v,
+            self.w,
+            self.last,
+            self.first_image_shift,
+            self.company,
         )
 
     def run(self, collisions):
-        """The events up to and with the so-manieth pair collision."""
+        """Return the events up to and including the pair collision of this number."""
         events = []
         while collisions > 0:
             events.append(self.step())
@@ -71,30 +78,31 @@ class Exact:
     def step(self):
         """Carry out the next event and return it."""
         while True:
-            look = self._longest_look()
-            wait, event = min(self._ahead(), key=lambda found: found[0])
-            if wait <= look:
+            interval = self._safe_interval()
+            wait, event = min(self._ahead(), key=lambda pair: pair[0])
+            if wait <= interval:
                 self.move(wait)
                 self._resolve(event)
                 return event
-            self.move(look)
+            self.move(interval)
             if self.floor and self.time >= self._stroke_end() * (1 - Decimal(10) ** (8 - DIGITS)):
                 self.time = self._stroke_end()
                 self.stroke += 1
 
     def follow(self, event):
-        """Carry out this event, which is the next one on these paths, too."""
+        """Carry out the event, which is the next one on these paths, too."""
         self.move(self._wait(event))
         self._resolve(event)
 
-    def _longest_look(self):
-        """No pair moves by more than half a box within it, and the floor's stroke does not end."""
-        look = self._stroke_end() - self.time if self.floor else NEVER
+    def _safe_interval(self):
+        """Return an interval in which no pair moves by more than half a box, and the floor's stroke
+        does not end."""
+        interval = self._stroke_end() - self.time if self.floor else NEVER
         if self.periods:
             speeds = [dot(v, v).sqrt() for v in map(self._velocity_in_box, self.x, self.v)]
             fastest = 2 * max(speeds) + abs(self.shear)
-            look = min(look, HALF * min(self.periods) / fastest)
-        return look
+            interval = min(interval, HALF * min(self.periods) / fastest)
+        return interval
 
     def _stroke_end(self):
         return (self.stroke + 1) * self.floor[1]
@@ -104,7 +112,7 @@ class Exact:
         return (v[0] - crossed * self.shear, v[1], v[2])
 
     def _ahead(self):
-        """(wait, event) of everything that may come next."""
+        """Yield (wait, event) of all possible next events."""
         number = len(self.x)
         for i, j in itertools.combinations(range(number), 2):
             for image in self._images(i, j):
@@ -116,10 +124,10 @@ class Exact:
             yield self._wait(event), event
 
     def _images(self, i, j):
-        """The images of j that i may touch after half a box of relative motion."""
+        """Yield the images of j that i may touch after half a box of relative motion."""
         d = minus(self.x[i], self.x[j])
         for up in self._numbers(d[1], 1):
-            for along in self._numbers(d[0] + up * self.slid(), 0):
+            for along in self._numbers(d[0] + up * self.image_shift(), 0):
                 for out in self._numbers(d[2], 2):
                     yield along, up, out
 
@@ -132,19 +140,19 @@ class Exact:
         near = range(nearest - 1, nearest + 2)
         return [k for k in near if abs(distance + k * length) <= reach]
 
-    def slid(self):
-        """How far the image above has slid."""
-        return self.slide + self.shear * self.time
+    def image_shift(self):
+        """Return the shift of the image above."""
+        return self.first_image_shift + self.shear * self.time
 
-    def apart(self, i, j, image):
-        """Position and velocity of i from this image of j."""
+    def relative_motion(self, i, j, image):
+        """Return position and velocity of i relative to an image of j."""
         x, v = minus(self.x[i], self.x[j]), minus(self.v[i], self.v[j])
         x = tuple(a + k * (length or 0) for a, k, length in zip(x, image, self.box, strict=True))
         up = image[1]
-        return (x[0] + up * self.slid(), *x[1:]), (v[0] + up * self.shear, *v[1:])
+        return (x[0] + up * self.image_shift(), *x[1:]), (v[0] + up * self.shear, *v[1:])
 
     def _wait(self, event):
-        """Time until this event on the present paths."""
+        """Return the time until an event on the present paths."""
         if event.kind == "pair":
             return self._until_contact(event.i, event.j, event.image)
         x, v, radius = self.x[event.i], self.v[event.i], self.company.radius[event.i]
@@ -163,8 +171,9 @@ class Exact:
         return max(gap, ZERO) / speed if speed > 0 else NEVER
 
     def _until_contact(self, i, j, image):
-        """First root of |x + v t| = a_i + a_j, if they approach; overlapping is now."""
-        x, v = self.apart(i, j, image)
+        """Return the first root of |x + v t| = a_i + a_j if they approach; 0 for overlapping
+        particles."""
+        x, v = self.relative_motion(i, j, image)
         b = dot(x, v)
         if b >= 0:
             return NEVER
@@ -176,7 +185,7 @@ class Exact:
         return max(ZERO, (-b - discriminant.sqrt()) / vv)
 
     def move(self, wait):
-        """Everything in free flight."""
+        """Move all particles in free flight."""
         drop = [ZERO] * 3
         drop[self.top] = self.gravity * wait
         fallen = times(drop, HALF * wait)
@@ -206,7 +215,7 @@ class Exact:
         self._bounce(i, n, moving, *material)
 
     def _collide(self, i, j, image):
-        x, v = self.apart(i, j, image)
+        x, v = self.relative_motion(i, j, image)
         n = times(x, 1 / dot(x, x).sqrt())
         r, beta = self._material(i, j)
         r = self._restitution(r, abs(dot(v, n)), i, j)
@@ -215,12 +224,12 @@ class Exact:
         self._kick(j, push, twist)
 
     def _material(self, i, j):
-        if self.world.contents is None:
+        if self.world.mixture is None:
             return self.r, self.beta
         common = {"restitution": self.world.r, "roughness": self.world.beta, "mu": None}
         species = self.company.species
-        found = self.world.contents.between(species[i], species[j], common)
-        return Decimal(found["restitution"]), Decimal(found["roughness"])
+        material = self.world.mixture.between(species[i], species[j], common)
+        return Decimal(material["restitution"]), Decimal(material["roughness"])
 
     def _bounce(self, i, n, wall_velocity, r, beta):
         v = minus(self.v[i], wall_velocity)
@@ -229,8 +238,8 @@ class Exact:
         self._kick(i, times(push, Decimal(-1)), twist)
 
     def _impulse(self, n, v, w, r, beta, *partners):
-        """The momentum that is exchanged, and n times its part along the surfaces; a wall, which is
-        no partner, takes any without moving."""
+        """Return the exchanged momentum, and n times its tangential component. A wall, which is not
+        among the partners, takes any momentum without moving."""
         mass, q = self.company.mass, self.company.q
         normal = times(n, dot(v, n))
         push = times(normal, (1 + r) / sum(1 / mass[k] for k in partners))
@@ -248,7 +257,8 @@ class Exact:
             self.w[i] = plus(self.w[i], times(twist, 1 / (mass * self.company.q[i])))
 
     def _restitution(self, r, speed, *particles):
-        """Contacts soon after the previous one lose nothing along the normal."""
+        """Return the restitution; contacts soon after the previous one lose nothing along the
+        normal."""
         r = restitution(self.world, r, speed)
         previous = max(self.last[k] for k in particles)
         for k in particles:

@@ -44,22 +44,24 @@ CASES = {
 
 
 def start(experiment, r, beta, seed):
-    """The exact simulation and the brute force of the same initial state."""
+    """Return the exact simulation and the brute force of the same initial state."""
     scene, world = scene_of(experiment, r, beta)
     _, state = begin(experiment, r, beta, seed)
     shot = snapshot(state, scene)
-    brute = BruteForce(world, shot.position, shot.velocity, shot.spin, company=shot.company)
+    brute = BruteForce(world, shot.position, shot.velocity, shot.spin, bodies=shot.bodies)
     return exactly(state, scene, world), brute
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_brute_force_makes_the_same_events(name):
-    """Twenty collisions from each of three starts, to what roundings have become by then."""
+    """Twenty collisions from each of three starts; differences are amplified rounding errors."""
     for seed in range(3):
         exact, brute = start(*CASES[name], seed)
         for _ in range(20):
-            events, others = exact.run(1), brute.run(1)
-            assert [event[:3] for event in events] == [other[1:] for other in others]
+            events, brute_events = exact.run(1), brute.run(1)
+            assert [event[:3] for event in events] == [
+                brute_event[1:] for brute_event in brute_events
+            ]
         shot = as_snapshot(exact, brute.snapshot())
         assert compare(shot, brute) < 1e-7
 

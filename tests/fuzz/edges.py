@@ -1,7 +1,7 @@
-"""Each option of each command, each key of a schedule and each environment at its edges.
+"""Extreme values of each option of each command, of each key of a schedule, and of the environment.
 
-Whatever is given, a command ends with what it was to make, or with one line that names the key or
-the value; inputs stay as they were, and nothing is left half-written.
+Whatever the values, a command makes its output, or ends with one line that names the key or the
+value; inputs do not change, and no file is left half-written.
 """
 
 import hashlib
@@ -12,32 +12,32 @@ import sys
 import tempfile
 from pathlib import Path
 
-from habits.conftest import environment
+from robustness.conftest import environment
 from schedules import COOLING, STEADY, TINY
 from tests.cli.parsers import commands
 from tests.files import write_all
 from tests.fuzz import test_configurations
-from tests.fuzz.spoiling import NUMBERS, OTHERS, WORDS
+from tests.fuzz.spoiling import NUMBERS, OTHER_VALUES, WORDS
 from tests.fuzz.test_commands import outcome
 
-from roughgas.config.schema import keys
+from roughgas.simulation.protocols import PROTOCOLS
 
-LIMIT = 60
+TIME_LIMIT = 60
 """Seconds that a process may take."""
-LONG = "x" * 5000
+LONG_TEXT = "x" * 5000
 POINTS = "points/gas/r0.9/beta0"
-TEXTS = ["", "0", "0.5", "1", "2", "-1", "1e300", "nan", "inf", LONG, "a b'\"äü.nc", "-x.nc"]
+TEXTS = ["", "0", "0.5", "1", "2", "-1", "1e300", "nan", "inf", LONG_TEXT, "a b'\"äü.nc", "-x.nc"]
 TEXTS += ["/dev/null", "points", "/proc/none", "out.nc", "gas.nc", f"{POINTS}/seed1.nc"]
 TEXTS += ["0.9", "3", "5", "10", "gas", "config.yaml", "new.nc"]
 GAS = ["gas", "--r=0.9", "--beta=0", "--settings", json.dumps(TINY)]
 DRIVEN = TINY | {
-    "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],
+    "effects": test_configurations.CONFIGURATION["experiments"]["sheared"]["effects"],
     "schedule": STEADY | {"equilibrate": 1, "measure": 4},
 }
 SWEPT = TINY | {"sweep": {"r": ["0.9"], "beta": ["0"], "seeds": 2}}
-CONFIG = test_configurations.WHOLE
+CONFIG = test_configurations.CONFIGURATION
 CONFIG = CONFIG | {"experiments": CONFIG["experiments"] | {"gas": SWEPT}}
-RIGHT = {
+VALID_ARGUMENTS = {
     "run": [*GAS, "--output", "out.nc"],
     "movie": [*GAS, "--frames=3", "--length=1", "--output", "out.gif"],
     "trajectory": [*GAS, "--frames=3", "--length=1", "--output", "out.xyz"],
@@ -48,15 +48,15 @@ RIGHT = {
     "completion": ["bash"],
     "reduce": [f"{POINTS}/seed1.nc", f"{POINTS}/seed2.nc", "--output", "out.nc"],
 }
-"""For each command what it takes: the positional arguments first."""
-LEFT_OUT = {"doctor", "crate"}
-"""These have no options with values of their own, or take minutes or a whole project."""
-OUTPUTS = {"output"}
-SLOW = {"movie", "trajectory"}
+"""Valid arguments of each command, the positional ones first."""
+SKIPPED_COMMANDS = {"doctor", "crate"}
+"""Commands without options of their own, or that take minutes or an entire project."""
+OUTPUT_OPTIONS = {"output"}
+SLOW_COMMANDS = {"movie", "trajectory"}
 
 
 def write_folder(folder):
-    """A folder with a file of each kind."""
+    """Fill a folder with a file of each kind, and return it."""
     folder.mkdir()
     write_all(folder)
     (folder / "config.yaml").write_text(json.dumps(CONFIG))
@@ -75,89 +75,110 @@ PARSERS = commands()
 
 
 def options():
-    """Each (command, option with a value) of the parser."""
+    """All (command, option with a value) of the parser."""
     return [
         (name, action)
         for name, parser in PARSERS.items()
-        if name not in LEFT_OUT
+        if name not in SKIPPED_COMMANDS
         for action in parser._actions
         if action.nargs != 0
     ]
 
 
-def line_with(name, action, text):
-    """The line that is right for a command, but for the value of one option."""
-    line = list(RIGHT[name])
+def line_with(name, action, value):
+    """A valid line of a command, with this value of an option."""
+    line = list(VALID_ARGUMENTS[name])
     if not action.option_strings:
-        positional = [one for one in PARSERS[name]._actions if not one.option_strings]
-        line[positional.index(action)] = text
+        positional = [
+            argument for argument in PARSERS[name]._actions if not argument.option_strings
+        ]
+        line[positional.index(action)] = value
         return [name, *line]
     option = action.option_strings[-1]
-    for k in [k for k, word in enumerate(line) if word.partition("=")[0] == option]:
-        del line[k : k + (1 if "=" in line[k] else 2)]
-    return [name, *line, f"{option}={text}"]
+    for position in [
+        position for position, word in enumerate(line) if word.partition("=")[0] == option
+    ]:
+        del line[position : position + (1 if "=" in line[position] else 2)]
+    return [name, *line, f"{option}={value}"]
 
 
 def contents(folder):
-    """The hash of each file below a folder."""
+    """Path -> hash of each file below a folder."""
     files = [path for path in folder.rglob("*") if path.is_file()]
     return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
-def check(folder, monkeypatch, line, names=(), replaced=()):
-    """Run a command line in a copy of the folder: "done" or "refused". A refusal says one of
-    `names`; no file but `replaced` changes."""
-    copy = folder.with_name("copy")
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(folder, copy)
-    monkeypatch.chdir(copy)
-    replaced = {copy / name for name in replaced}
-    before = {path: digest for path, digest in contents(copy).items() if path not in replaced}
+def check(folder, monkeypatch, line, expected_words=(), replaced=()):
+    """Run a command line in a copy of the folder, and return "done" or "refused".
+
+    A refusal names an expected word; only files in `replaced` may change.
+    """
+    working_copy = folder.with_name("copy")
+    shutil.rmtree(working_copy, ignore_errors=True)
+    shutil.copytree(folder, working_copy)
+    monkeypatch.chdir(working_copy)
+    replaced = {working_copy / name for name in replaced}
+    contents_before = {
+        path: digest for path, digest in contents(working_copy).items() if path not in replaced
+    }
     try:
-        status, said = outcome(line)
-        after = contents(copy)
-        assert not status or set(after) - replaced == set(before) - replaced, said
-        return judged(status, said, before, after, names)
+        status, message = outcome(line)
+        contents_after = contents(working_copy)
+        assert not status or set(contents_after) - replaced == set(contents_before) - replaced, (
+            message
+        )
+        return checked_outcome(status, message, contents_before, contents_after, expected_words)
     finally:
         monkeypatch.chdir(folder)
 
 
-def judged(status, said, before, after, names=()):
-    """What came of a command, which has said this and found and left these files."""
-    assert {path: after.get(path) for path in before} == before, "an input has changed"
-    new = [path for path in after if path not in before]
-    assert not [path for path in new if path.suffix == ".tmp" or path.name.startswith(".")], new
+def checked_outcome(status, message, contents_before, contents_after, expected_words=()):
+    """The outcome of a command, "done" or "refused", from its status, its message and its files.
+
+    Asserts that inputs are unchanged, and that a refusal is a single line.
+    """
+    assert {path: contents_after.get(path) for path in contents_before} == contents_before, (
+        "an input has changed"
+    )
+    new_files = [path for path in contents_after if path not in contents_before]
+    assert not [path for path in new_files if path.suffix == ".tmp" or path.name.startswith(".")], (
+        new_files
+    )
     if not status:
-        assert all(path.stat().st_size for path in new), new
+        assert all(path.stat().st_size for path in new_files), new_files
         return "done"
-    lines = [one for one in said.splitlines() if " so far" not in one]
-    assert status in (1, 2) and len(lines) == 1 and lines[0].startswith("roughgas: error: "), said
-    assert not names or any(name in lines[0] for name in filter(None, names)), said
+    lines = [line for line in message.splitlines() if " so far" not in line]
+    assert status in (1, 2) and len(lines) == 1 and lines[0].startswith("roughgas: error: "), (
+        message
+    )
+    assert not expected_words or any(name in lines[0] for name in filter(None, expected_words)), (
+        message
+    )
     return "refused"
 
 
 def check_option(folder, monkeypatch, name, action, text):
-    """Give an option this value."""
+    """Run a command with this value of an option: "done" or "refused"."""
     option = (action.option_strings or [action.dest])[-1].lstrip("-")
-    names = [option, option.replace("-", " "), option.rstrip("s"), str(action.metavar)]
-    names += [text[:10], Path(text).name, "file"] if text else [".", "file"]
-    is_new = action.dest in OUTPUTS and text not in RIGHT[name]
+    expected_words = [option, option.replace("-", " "), option.rstrip("s"), str(action.metavar)]
+    expected_words += [text[:10], Path(text).name, "file"] if text else [".", "file"]
+    replaces_output = action.dest in OUTPUT_OPTIONS and text not in VALID_ARGUMENTS[name]
     line = line_with(name, action, text)
-    return check(folder, monkeypatch, line, names, [text] if is_new else [])
+    return check(folder, monkeypatch, line, expected_words, [text] if replaces_output else [])
 
 
 def schedule_keys():
-    """Each (kind, key) of a schedule."""
+    """All (kind, key) of schedules."""
     return [
         (kind, key)
-        for kind, right in (("steady", STEADY), ("cooling", COOLING))
-        for key in keys("schedule")
-        if key in right
+        for kind, schedule in (("steady", STEADY), ("cooling", COOLING))
+        for key in ("kind", *PROTOCOLS[kind].SETTINGS.__struct_fields__)
+        if key in schedule
     ]
 
 
 def check_schedule(folder, monkeypatch, kind, key, value):
-    """Run a tiny gas whose schedule has this value."""
+    """Run a tiny gas with this value in its schedule: "done" or "refused"."""
     gas = DRIVEN if kind == "steady" else TINY
     settings = gas | {"schedule": gas["schedule"] | {key: value}}
     line = ["run", *GAS[:-1], json.dumps(settings)]
@@ -180,44 +201,46 @@ ENVIRONMENTS = {
     "odd folder": ({}, "", "a b'\"c\nä$(x)"),
     "folder like an option": ({}, "", "-x"),
 }
-"""Changes of the environment, what a shell does first, and the folder that a command is run in."""
+"""(changes of the environment, commands of the shell before, folder of the run), by name."""
 COMMANDS = (["run", *GAS], ["show", "INPUT"], ["experiments"], ["theory", "--r=0.9", "--beta=0"])
 
 
 def check_environment(folder, tmp, name, command):
     """Run a command as a process in a new folder: "done" or "refused"."""
-    changes, first, place = ENVIRONMENTS[name]
-    place = tmp / place
-    place.mkdir(parents=True, exist_ok=True)
-    line = [word.replace("INPUT", str(folder / RIGHT["show"][0])) for word in command]
-    done = subprocess.run(
-        ["sh", "-c", f'{first} exec "$@"', "sh", sys.executable, "-m", "roughgas", *line],
-        cwd=place,
+    changes, shell_prefix, subfolder = ENVIRONMENTS[name]
+    working_folder = tmp / subfolder
+    working_folder.mkdir(parents=True, exist_ok=True)
+    line = [word.replace("INPUT", str(folder / VALID_ARGUMENTS["show"][0])) for word in command]
+    process = subprocess.run(
+        ["sh", "-c", f'{shell_prefix} exec "$@"', "sh", sys.executable, "-m", "roughgas", *line],
+        cwd=working_folder,
         env=environment(**changes),
         capture_output=True,
         text=True,
-        timeout=LIMIT,
+        timeout=TIME_LIMIT,
     )
-    return judged(done.returncode, done.stderr, {}, contents(tmp))
+    return checked_outcome(process.returncode, process.stderr, {}, contents(tmp))
 
 
-VALUES = [*NUMBERS, 0.25, 1.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, *WORDS[:3], *OTHERS[:4]]
-"""Of keys of schedules."""
+VALUES = [*NUMBERS, 0.25, 1.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, *WORDS[:3], *OTHER_VALUES[:4]]
+"""Values of keys of schedules."""
 
 
 def cases():
-    """All cases: a kind, and what it is about."""
-    options_ = [("option", name, action, text) for name, action in options() for text in TEXTS]
-    schedules = [("schedule", *key, value) for key in schedule_keys() for value in VALUES]
-    around = [("environment", name, command) for name in ENVIRONMENTS for command in COMMANDS]
-    return [*options_, *schedules, *around]
+    """All cases (kind, arguments of the check)."""
+    option_cases = [("option", name, action, text) for name, action in options() for text in TEXTS]
+    schedule_cases = [("schedule", *key, value) for key in schedule_keys() for value in VALUES]
+    environment_cases = [
+        ("environment", name, command) for name in ENVIRONMENTS for command in COMMANDS
+    ]
+    return [*option_cases, *schedule_cases, *environment_cases]
 
 
 def attempt(folder, monkeypatch, case):
-    """What came of a case."""
-    kind, *about = case
+    """The outcome of a case: "done" or "refused"."""
+    kind, *arguments = case
     if kind == "environment":
         with tempfile.TemporaryDirectory() as tmp:
-            return check_environment(folder, Path(tmp), *about)
-    one = check_option if kind == "option" else check_schedule
-    return one(folder, monkeypatch, *about)
+            return check_environment(folder, Path(tmp), *arguments)
+    check_setting = check_option if kind == "option" else check_schedule
+    return check_setting(folder, monkeypatch, *arguments)

@@ -1,35 +1,33 @@
-"""Whatever a person may type, about files of ours, spoiled ones and foreign ones, gives a result or
-one line, and leaves nothing half-written."""
+"""Any command line, on valid, spoiled or foreign files, gives a result or one line, and leaves no
+file half-written."""
 
-import contextlib
-import io
 import os
 import shutil
 
 import pytest
 import xarray as xr
 from hypothesis import strategies as st
-from tests.entry import main
-from tests.files import write_all
-from tests.fuzz.spoiling import ENOUGH, OFTEN, outcomes, share
+from tests.entry import outcome
+from tests.files import COMBINE, COVERAGE, DRAW, write_all
+from tests.fuzz.spoiling import EACH_EFFORT, LEAST_SHARE, outcomes, share
 
 WORDS = ["", "-", "--", "x", "é", "fig1a", "accuracy", "-1", "0.9", "1e-300", "nan", "10" * 30]
 WORDS += ["a\nb"]
 JSON = ["{", "[]", "3", "null", "NaN", "{}", '{"a": 1}', '{"experiments": null}', '{"scale": "x"}']
-MEANT = ["show", "show --json", "reduce -o out.nc", "table -o out.csv"]
-MEANT += ["claims --json out.json --markdown out.md"]
-MEANT += ["explore --points . -o out.html", "document -o out.html", "run_times -o out.md"]
-MEANT += ["accuracy_table -o out.md", "accuracy_data -o out.nc"]
-MEANT += ["crate -o out.zip"]
-"""Command lines without their files, which come after the command."""
-RIGHT = [
+COMMANDS = ["show", "show --json", "reduce -o out.nc", "table -o out.csv"]
+COMMANDS += ["claims --json out.json --markdown out.md"]
+COMMANDS += ["explore --points . -o out.html", "document -o out.html", "run_times -o out.md"]
+COMMANDS += [COMBINE.replace("{} ", "")]
+COMMANDS += ["crate -o out.zip"]
+"""Command lines without their files, which follow the command."""
+VALID_LINES = [
     "table reduced.nc -o out.csv",
     "document page.md -o out.html",
-    "accuracy_data task.nc -o out.nc",
-    "accuracy_table studies.nc -o out.md",
+    COMBINE.format("task.nc"),
+    DRAW.format("studies.nc"),
     "run_times reduced.nc -o out.md",
 ]
-"""Command lines that are right."""
+"""Valid command lines."""
 OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--markdown", "--help"]
 OPTIONS += ["--configuration", "--x"]
 OUTPUTS = ["out.csv", "out.nc", "out.md", "out.html", "out.png", "out.zip", "no/out.json", "out"]
@@ -41,7 +39,7 @@ def folder(tmp_path_factory):
 
 
 def write_folder(folder):
-    """A folder with a file of each kind, a copy of each cut short, and foreign ones."""
+    """Fill a folder with a file of each kind, a truncated copy of each, and foreign files."""
     folder.mkdir()
     for kind, path in write_all(folder).items():
         content = path.read_bytes()
@@ -54,49 +52,38 @@ def write_folder(folder):
     return folder
 
 
-def outcome(arguments):
-    """The exit status of a command line, and what it has said."""
-    said, errors = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):
-        try:
-            status = main(arguments)
-        except SystemExit as end:
-            status = end.code
-    return status, errors.getvalue()
-
-
 def check(folder, monkeypatch, arguments):
-    """Run a command line in a copy of the folder, since some put damaged files aside."""
-    copy = folder.with_name("copy")
-    shutil.copytree(folder, copy, copy_function=os.link)  # inputs are never written to
-    monkeypatch.chdir(copy)
+    """Run a command line in a copy of the folder, where it may move files: "done" or "refused"."""
+    working_copy = folder.with_name("copy")
+    shutil.copytree(folder, working_copy, copy_function=os.link)  # inputs are never written to
+    monkeypatch.chdir(working_copy)
     try:
         status, errors = outcome(arguments)
         assert status in (0, 1, 2)
         if status:
             assert errors.count("\n") == 1 and errors.startswith("roughgas: error: "), errors
-        assert not list(copy.rglob("*.tmp"))
+        assert not list(working_copy.rglob("*.tmp"))
         return "refused" if status else "done"
     finally:
         monkeypatch.chdir(folder)
-        shutil.rmtree(copy)
+        shutil.rmtree(working_copy)
 
 
 @st.composite
-def right_lines(draw):
-    """A command with a file that it takes."""
+def valid_lines(draw):
+    """A valid command line."""
     number = draw(st.integers(0, 10**6))
-    return draw(st.sampled_from(RIGHT)).replace("out", f"out{number}").split()
+    return draw(st.sampled_from(VALID_LINES)).replace("out", f"out{number}").split()
 
 
 @st.composite
 def command_lines(draw, names):
-    """A command with files, as it is meant to be given or with words and options anywhere."""
+    """A command with files in the usual order, or with words and options anywhere."""
     files = st.sampled_from([*names, "none.nc", "."])
     if draw(st.booleans()):
-        command, *rest = draw(st.sampled_from(MEANT)).split()
+        command, *rest = draw(st.sampled_from(COMMANDS)).split()
         return [command, *draw(st.lists(files, min_size=1, max_size=3)), *rest]
-    line = [draw(st.sampled_from(MEANT)).split()[0]]
+    line = [draw(st.sampled_from(COMMANDS)).split()[0]]
     line += draw(st.lists(st.one_of(files, st.sampled_from(WORDS)), max_size=3))
     for option in draw(st.lists(st.sampled_from(OPTIONS), max_size=3)):
         line.append(option)
@@ -104,11 +91,11 @@ def command_lines(draw, names):
     return line
 
 
-@OFTEN
-def test_command_lines(folder, monkeypatch, often):
+@EACH_EFFORT
+def test_any_command_line_is_carried_out_or_refused_in_one_line(folder, monkeypatch, effort):
     lines = command_lines(sorted(os.listdir(folder)))
-    found = outcomes(often, lines, lambda line: check(folder, monkeypatch, line), right_lines())
-    assert share(found, "done") > ENOUGH
+    counts = outcomes(effort, lines, lambda line: check(folder, monkeypatch, line), valid_lines())
+    assert share(counts, "done") > LEAST_SHARE
 
 
 @pytest.mark.parametrize("text", JSON)
@@ -117,9 +104,11 @@ def test_command_lines(folder, monkeypatch, often):
     [
         ["run", "cooling", "--r=0.9", "--beta=0", "-o", "out.nc", "--settings"],
         ["effective_config", "config.yaml", "--scale=paper", "-o", "out", "--changes"],
-        ["accuracy_task", "statistical", "cooling-reference", "-o", "out.nc", "--settings"],
+        ["task", str(COVERAGE), "gas", "--module=coverage", "-o", "out.nc", "--settings"],
         ["crate", "page.md", "-o", "out.zip", "--configuration"],
     ],
 )
-def test_options_that_take_json(folder, monkeypatch, arguments, text):
+def test_any_json_in_an_option_is_accepted_or_refused_in_one_line(
+    folder, monkeypatch, arguments, text
+):
     check(folder, monkeypatch, [*arguments, text])

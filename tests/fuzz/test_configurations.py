@@ -1,13 +1,14 @@
-"""Whatever a person may write into config.yaml is taken, or refused in one line."""
+"""Any content of config.yaml is accepted, or refused in one line."""
 
 import json
-from pathlib import Path
 
 import pytest
 from hypothesis import strategies as st
+from raw import protocols
+from tests import configurations
 from tests.fuzz.spoiling import (
-    ENOUGH,
-    OFTEN,
+    EACH_EFFORT,
+    LEAST_SHARE,
     legal_trees,
     outcomes,
     share,
@@ -17,16 +18,19 @@ from tests.fuzz.spoiling import (
 
 from roughgas import config
 from roughgas.base import InputError
-from roughgas.config.reading import read_yaml
-from roughgas.simulation import schedule
+from roughgas.base.reading import read_yaml
 
-WHOLE = read_yaml(Path(__file__).parents[1] / "experiments.yaml")
-KEPT = {"vibrated", "vibrated_rough_walls", "cooling", "heated", "studies"}
-BRIEF = WHOLE | {
-    "experiments": {name: one for name, one in WHOLE["experiments"].items() if name in KEPT},
+CONFIGURATION = configurations.configuration()
+EXPERIMENTS = {"vibrated", "vibrated_rough_walls", "cooling", "heated", "studies"}
+BRIEF_CONFIGURATION = CONFIGURATION | {
+    "experiments": {
+        name: experiment
+        for name, experiment in CONFIGURATION["experiments"].items()
+        if name in EXPERIMENTS
+    },
     "scales": {
         "paper": {},
-        "small": {k: v for k, v in WHOLE["scales"]["small"].items() if k in KEPT},
+        "small": {k: v for k, v in CONFIGURATION["scales"]["small"].items() if k in EXPERIMENTS},
     },
 }
 TEXT = """\
@@ -44,37 +48,38 @@ experiments:
 scales: {paper: {}}
 """
 
-NUMBERED = st.integers(2, 10**4).map(lambda number: TEXT.replace("s: 20", f"s: {number}"))
+LEGAL_TEXTS = st.integers(2, 10**4).map(lambda number: TEXT.replace("s: 20", f"s: {number}"))
 
 
 def outcome(path):
-    """Whether a configuration is taken, all of it: "taken", or "refused" in one line."""
+    """Load a configuration and all its experiments: "taken", or "refused" in one line."""
     try:
-        found = config.load(path)
-        for scale in found["scales"]:
-            for name in found["experiments"]:
-                chosen = config.experiment(found, name, scale)
-                for variant in config.every_variant(name, chosen).values():
-                    schedule.check(variant)
+        configuration = config.load(path)
+        for scale in configuration.scales:
+            for name in configuration.experiments:
+                for variant in configuration.experiment(name, scale).every_variant(name).values():
+                    protocols.check_experiment(variant.experiment(name))
     except InputError as error:
         assert "\n" not in str(error)
         return "refused"
     return "taken"
 
 
-def values_are_spoiled(path, tree):
+def outcome_of_values(path, tree):
+    """The outcome of a configuration with these values."""
     path.write_text(json.dumps(tree))
     return outcome(path)
 
 
-def text_is_spoiled(path, text):
+def outcome_of_text(path, text):
+    """The outcome of reading a YAML file with this text."""
     path.write_text(text, encoding="utf-8")
     try:
-        found = read_yaml(path)
+        content = read_yaml(path)
     except InputError as error:
         assert "\n" not in str(error)
         return "refused"
-    json.dumps(found)  # nothing but dictionaries, lists, text and numbers
+    json.dumps(content)  # fails on other types than dictionaries, lists, text and numbers
     return "taken"
 
 
@@ -83,15 +88,20 @@ def path(tmp_path_factory):
     return tmp_path_factory.mktemp("spoiled") / "config.yaml"
 
 
-@OFTEN
-def test_spoiled_values(path, often):
-    found = outcomes(
-        often, spoiled_trees(BRIEF), lambda tree: values_are_spoiled(path, tree), legal_trees(BRIEF)
+@EACH_EFFORT
+def test_spoiled_values_are_accepted_or_refused_in_one_line(path, effort):
+    counts = outcomes(
+        effort,
+        spoiled_trees(BRIEF_CONFIGURATION),
+        lambda tree: outcome_of_values(path, tree),
+        legal_trees(BRIEF_CONFIGURATION),
     )
-    assert share(found, "taken") > ENOUGH
+    assert share(counts, "taken") > LEAST_SHARE
 
 
-@OFTEN
-def test_spoiled_text(path, often):
-    found = outcomes(often, spoiled_texts(TEXT), lambda text: text_is_spoiled(path, text), NUMBERED)
-    assert share(found, "taken") > ENOUGH
+@EACH_EFFORT
+def test_spoiled_text_is_accepted_or_refused_in_one_line(path, effort):
+    counts = outcomes(
+        effort, spoiled_texts(TEXT), lambda text: outcome_of_text(path, text), LEGAL_TEXTS
+    )
+    assert share(counts, "taken") > LEAST_SHARE

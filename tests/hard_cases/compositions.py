@@ -1,6 +1,7 @@
-"""What scenes may be composed of, said once more and apart from the package: an effect is a line in
+"""Legal compositions of effects, stated independently of the package.
 
-PARAMETERS, and one in NEEDS or EXCLUDES if it does not go with everything.
+Each effect is a line in PARAMETERS; NEEDS and EXCLUDES have the effects that it requires or
+excludes.
 """
 
 import itertools
@@ -9,9 +10,9 @@ import random
 import numpy as np
 from hypothesis import strategies as st
 
-from roughgas.effects import KINDS
+from roughgas.effects import EFFECTS
 
-WAVES = KINDS["floor"].parameters["wave"].words
+WAVES = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
 MATERIAL = {
     "restitution": st.sampled_from([0.3, 0.7, 0.9, 1.0]),
     "roughness": st.sampled_from([-1.0, -0.4, 0.5, 1.0]),
@@ -28,7 +29,7 @@ PARAMETERS = {
     },
     "walls": MATERIAL,
     "shaken_walls": {"amplitude": st.floats(0.0, 5.0), "period": st.floats(0.2, 5.0), **MATERIAL},
-    # of each side one kind of wall, since each kind is a kernel of its own
+    # a single kind of wall on each side, since each kind compiles a kernel
     "left_wall": {"velocity": st.floats(0.5, 2.0), **MATERIAL},
     "right_wall": {"shaken": st.just("along"), "wave": st.sampled_from(WAVES), **STROKES},
     "back_wall": MATERIAL,
@@ -68,11 +69,11 @@ PARAMETERS = {
     "contact_log": {"most": st.sampled_from([1, 100])},
     "paths": {},
 }
-MOVED = {"floor", "right_wall"}  # in any wave form
+WAVING = {"floor", "right_wall"}  # effects that move in any wave form
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]
 NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
 NEEDS += [("contact_averages", "spin")]
-NEEDS += [*((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1]))]
+NEEDS += [*((name, opposite) for pair in OPPOSITE for name, opposite in (pair, pair[::-1]))]
 NEEDS += [("bottom_wall", "lid")]
 EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
 EXCLUDES += [("bottom_wall", "gravity"), ("langevin", "shear")]
@@ -82,14 +83,14 @@ EXCLUDES += [*(("shear", name) for name in OPPOSITE[1])]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes
 ENDLESS = {"gravity", "shear"}
-# what parameters are where nothing spins
+# values of these parameters without spin
 WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0, "spin_drag": 0.0}
 
 
 def is_legal(effects, dimension):
-    """Whether these effects go together in a box that is open above where there is gravity."""
+    """Whether these effects are compatible, in a box that is open above if they include gravity."""
     return (
-        all(needed in effects for one, needed in NEEDS if one in effects)
+        all(required in effects for effect, required in NEEDS if effect in effects)
         and not any(effects >= {*pair} for pair in EXCLUDES)
         and not (dimension == 2 and effects >= {"gravity", "shear"})  # sheared between its sides
         and not (dimension == 2 and effects & {"front_wall", "back_wall"})
@@ -98,72 +99,88 @@ def is_legal(effects, dimension):
     )
 
 
-def every_set():
-    """Every set of up to three effects, the same with what they need, and all effects but these:
-    there and not there, any three occur together in every way that is legal."""
-    sets = [set(c) for n in range(4) for c in itertools.combinations(sorted(KINDS), n)]
-    found = [which for one in sets for which in (one, with_needs(one), set(KINDS) - one)]
-    return [set(one) for one in dict.fromkeys(map(frozenset, found))]
+def sets_to_judge():
+    """All sets of up to three effects, these with the effects they need, and their complements.
+
+    So any three effects, present or absent, occur together in all legal ways.
+    """
+    sets = [set(c) for n in range(4) for c in itertools.combinations(sorted(EFFECTS), n)]
+    candidates = [
+        candidate
+        for effects in sets
+        for candidate in (effects, with_needs(effects), set(EFFECTS) - effects)
+    ]
+    return [set(effects) for effects in dict.fromkeys(map(frozenset, candidates))]
 
 
 def with_needs(effects):
-    """These effects and all that they need, directly or not."""
-    whole = effects | {needed for one, needed in NEEDS if one in effects}
+    """These effects and all effects that they need, directly or indirectly."""
+    completed = effects | {required for effect, required in NEEDS if effect in effects}
     if "lid" in effects and "floor" not in effects:
-        whole = whole | {"bottom_wall"}
-    return whole if whole == effects else with_needs(whole)
+        completed = completed | {"bottom_wall"}
+    return completed if completed == effects else with_needs(completed)
 
 
 def random_sets(number):
-    """Legal (effects, dimension), with effects added in random order for as long as it is legal."""
-    draw, found = random.Random(0), []
+    """Legal (effects, dimension): effects are added in random order as long as the set is legal."""
+    rng, sets = random.Random(0), []
     for _ in range(number):
-        dimension, effects = draw.choice((2, 3)), set()
-        for name in draw.sample(sorted(KINDS), len(KINDS)):
-            more = with_needs(effects | {name})
-            if draw.random() < 0.7 and is_legal(more, dimension) and not more >= ENDLESS:
-                effects = more
-        found.append((effects, dimension))
-    return found
+        dimension, effects = rng.choice((2, 3)), set()
+        for name in rng.sample(sorted(EFFECTS), len(EFFECTS)):
+            extended = with_needs(effects | {name})
+            if rng.random() < 0.7 and is_legal(extended, dimension) and not extended >= ENDLESS:
+                effects = extended
+        sets.append((effects, dimension))
+    return sets
 
 
 def covering(strength):
-    """Legal compositions (effects, dimension, wave) in which all choices occur together that can:
+    """Legal compositions (effects, dimension, wave) that cover all legal combinations.
 
-    for any so many effects (the dimension counts as one, and so does a wave form), every legal
-    pattern of there and not there.
+    For each choice of `strength` effects, all legal patterns of present and absent occur; the
+    dimension counts as an effect, and so does a wave form.
     """
     legal = random_sets(600) + [
-        (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
+        (effects, dimension)
+        for effects in sets_to_judge()
+        for dimension in (2, 3)
+        if is_legal(effects, dimension) and not effects >= ENDLESS
     ]
-    choices = np.array([[*(name in one for name in KINDS), D == 3] for one, D in legal])
-    together = np.array([*itertools.combinations(range(choices.shape[1]), strength)])
-    patterns = choices[:, together] @ (1 << np.arange(strength, dtype=np.int8))
-    which = np.arange(len(together))
-    missing = np.zeros((len(together), 2**strength), bool)
-    for has in patterns:
-        missing[which, has] = True
-    found = []
+    choices = np.array(
+        [[*(name in effects for name in EFFECTS), dimension == 3] for effects, dimension in legal]
+    )
+    subsets = np.array([*itertools.combinations(range(choices.shape[1]), strength)])
+    patterns = choices[:, subsets] @ (1 << np.arange(strength, dtype=np.int8))
+    rows = np.arange(len(subsets))
+    missing = np.zeros((len(subsets), 2**strength), bool)
+    for pattern in patterns:
+        missing[rows, pattern] = True
+    chosen = []
     while missing.any():
-        best = max(range(len(legal)), key=lambda k: missing[which, patterns[k]].sum())
-        missing[which, patterns[best]] = False
-        found.append(legal[best])
-    return _with_waves(found, strength)
+        best = max(range(len(legal)), key=lambda k: missing[rows, patterns[k]].sum())
+        missing[rows, patterns[best]] = False
+        chosen.append(legal[best])
+    return _with_waves(chosen, strength)
 
 
-def _with_waves(found, strength):
-    """Give each composition a wave form of its floor and right wall, since forms have code of their
-    own; repeat some with other forms until each form of either has met any strength - 2 effects."""
-    met, waved = set(), []
-    for k, (effects, dimension) in enumerate(found * len(WAVES)):
-        others = [*itertools.combinations(sorted(effects), strength - 2)]
-        new = {w: {*itertools.product([w], MOVED & effects, others)} - met for w in WAVES}
-        turn = k % len(WAVES)  # of forms that are as good, each is taken as often
-        wave = max(WAVES[turn:] + WAVES[:turn], key=lambda w: len(new[w]))
-        if k < len(found) or new[wave]:
-            waved.append((effects, dimension, wave))
-            met |= new[wave]
-    return waved
+def _with_waves(compositions, strength):
+    """Give each composition a wave form of its floor and right wall, as each form has its own code.
+
+    Compositions are repeated until each form has occurred with any strength - 2 other effects.
+    """
+    covered, with_forms = set(), []
+    for k, (effects, dimension) in enumerate(compositions * len(WAVES)):
+        companions = [*itertools.combinations(sorted(effects), strength - 2)]
+        new_patterns = {
+            form: {*itertools.product([form], WAVING & effects, companions)} - covered
+            for form in WAVES
+        }
+        first = k % len(WAVES)  # equally good forms are taken in turn
+        wave = max(WAVES[first:] + WAVES[:first], key=lambda form: len(new_patterns[form]))
+        if k < len(compositions) or new_patterns[wave]:
+            with_forms.append((effects, dimension, wave))
+            covered |= new_patterns[wave]
+    return with_forms
 
 
 @st.composite
@@ -171,12 +188,12 @@ def scenes(draw, compositions):
     """(settings of an experiment, r, beta) of a legal scene with 2 to 40 particles."""
     names, dimension, wave = draw(st.sampled_from(compositions))
     effects = draw(parameters(names))
-    for name in MOVED & names:
+    for name in WAVING & names:
         effects[name]["wave"] = wave
     box = [draw(st.floats(7.0, 40.0)) for _ in range(dimension)]
     if "gravity" in names and "lid" not in names:
         box[-1] = "open"
-    # what is more inelastic than that may collapse, and has a contact time
+    # more inelastic gases may collapse without the contact-time model
     narrow = names & {"walls", "shaken_walls", "left_wall", "lid", "back_wall"}
     narrow = narrow and ("gravity" not in names or "lid" in names)
     r = draw(st.floats(0.2 if "contact_time" in names and not narrow else 0.9, 1.0))
@@ -189,27 +206,27 @@ def scenes(draw, compositions):
 
 @st.composite
 def mixtures(draw, compositions):
-    """As `scenes`, of one to three species: their sizes differ threefold, their masses by 1e6."""
+    """As `scenes`, of up to three species, whose sizes differ threefold and masses by 1e6."""
     experiment, r, beta = draw(scenes(compositions))
     material = {"restitution": st.floats(max(r, 0.9), 1.0)}
     if "spin" in experiment["effects"]:
         material |= {"inertia": st.floats(0.05, 1.0), "roughness": st.floats(-1.0, 1.0)}
     if "friction" in experiment["effects"]:
         material["mu"] = st.sampled_from([0.0, 0.2, 5.0])
-    one = st.fixed_dictionaries(
+    kind = st.fixed_dictionaries(
         {"radius": st.floats(0.6, 1.7)}, optional={"mass": st.floats(1e-3, 1e3), **material}
     )
     number = min(draw(st.integers(1, 3)), experiment["particles"])
-    species = [draw(one) | {"fraction": 1.0 / number} for _ in range(number)]
+    species = [draw(kind) | {"fraction": 1.0 / number} for _ in range(number)]
     return experiment | {"species": species}, r, beta
 
 
 @st.composite
 def parameters(draw, names):
-    """Legal parameters of these effects."""
+    """Legal settings of these effects."""
     fixed = {} if "spin" in names else WITHOUT_SPIN
     return {
         name: {key: fixed.get(key, draw(kind)) for key, kind in PARAMETERS[name].items()}
-        for name in KINDS
+        for name in EFFECTS
         if name in names
     }

@@ -1,6 +1,6 @@
-"""Falls onto a vibrated floor that are hard to time, and the same falls in many digits.
+"""Falls onto a vibrated floor whose hits are hard to time, and the same falls in many digits.
 
-A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_pieces takes it.
+A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_piecewise takes it.
 """
 
 import math
@@ -12,33 +12,37 @@ from roughgas.effects.motions import sawtooth
 
 
 class Exact(Fall):
-    """The same fall in many digits: `gap` above the stroke's surface, continued for ever, at t."""
+    """A fall in many digits; `gap` is the height above the surface of a stroke without end."""
 
     @property
     def fastest(self):
+        """The speed of the floor."""
         return self.A / self.P
 
     def gap(self, t, stroke):
+        """Height of the particle above the surface of a stroke at t."""
         return self.height(t) - self.fastest * (self.phase + t - stroke * self.P)
 
     def strokes(self, t):
-        """Those up to t in which the floor may be met, with the times at which they begin and end:
-        the particle is met by none that lasts while it is above where all strokes end."""
+        """(stroke, begin, end) of the strokes up to t that may hit the particle.
+
+        No stroke hits it while it is higher than the end of strokes.
+        """
         first = int(mpmath.floor(self.phase / self.P))
-        found = {first}
+        numbers = {first}
         for window in self._windows(t):
-            one, last = (int(mpmath.floor((self.phase + x) / self.P)) for x in window)
-            found |= set(range(max(first, one - 1), last + 1))
-        for stroke in found:
+            earliest, latest = (int(mpmath.floor((self.phase + x) / self.P)) for x in window)
+            numbers |= set(range(max(first, earliest - 1), latest + 1))
+        for stroke in numbers:
             begin, end = stroke * self.P - self.phase, (stroke + 1) * self.P - self.phase
             yield stroke, max(mpmath.mpf(0), begin), min(end, t)
 
     def depth(self, t):
-        """How far below a surface the lowest point has been by t: a gap is least at an end."""
+        """Greatest depth of the lowest point below a surface up to t: gaps are least at an end."""
         return max(-self.gap(x, k) for k, *ends in self.strokes(t) for x in ends)
 
     def miss(self, t):
-        """Distance from the surface at t, or from that of another stroke and from when it is."""
+        """Distance from the surface at t, or from the end or start of a neighbouring stroke."""
         k = int(mpmath.floor((self.phase + t) / self.P))
         edges = {k - 1: k * self.P - self.phase, k: t, k + 1: (k + 1) * self.P - self.phase}
         fast = abs(self.v) + self.g * t + self.fastest
@@ -46,25 +50,26 @@ class Exact(Fall):
 
 
 def dyadic(rng):
-    """A fall that ends exactly where a stroke does, or somewhat above or below."""
+    """A fall of dyadic numbers that ends at the end of a stroke, or slightly above or below."""
     floor = sawtooth(*(2.0 ** rng.integers(-3, 3, 2)))
     gravity, speed = 2.0 ** rng.integers(-4, 4), rng.integers(-64, 65) / 8.0
     phase = rng.integers(0, 64) / 16.0 * floor.period
-    return _shortly_before_or_after(rng, floor, gravity, speed, phase)
+    return _fall_to_end_of_stroke(rng, floor, gravity, speed, phase)
 
 
 def general(rng):
+    """A fall of general numbers that ends near the end of a stroke."""
     floor = sawtooth(*(10.0 ** rng.uniform(-1, 1, 2)))
     gravity = 10.0 ** rng.uniform(-3, 2)
     speed = rng.choice((-1.0, 1.0)) * 10.0 ** rng.uniform(-1, 3)
     phase = rng.uniform(0.0, 100.0) * floor.period
-    return _shortly_before_or_after(rng, floor, gravity, speed, phase)
+    return _fall_to_end_of_stroke(rng, floor, gravity, speed, phase)
 
 
-def _shortly_before_or_after(rng, floor, gravity, speed, phase):
-    """The height from which the end of a stroke is met, or somewhat more or less."""
+def _fall_to_end_of_stroke(rng, floor, gravity, speed, phase):
+    """A fall from the height that leads to the end of a stroke, or slightly more or less."""
     surface = floor.amplitude * (phase / floor.period % 1.0)
-    flight = max(0.0, 2.0 * speed / gravity)  # until it is back at the height of the start
+    flight = max(0.0, 2.0 * speed / gravity)  # until it returns to the height of the start
     stroke = math.floor((phase + flight) / floor.period) + rng.integers(0, 3)
     while True:
         t = stroke * floor.period - phase
@@ -77,7 +82,7 @@ def _shortly_before_or_after(rng, floor, gravity, speed, phase):
 
 
 def nearly_at_rest(rng):
-    """On the first stroke's surface, or so; half of the starts are exactly on it or below."""
+    """A start on the surface of the first stroke, or within rounding above or below it."""
     floor = sawtooth(10.0 ** rng.uniform(-1, 1), 2.0 ** rng.integers(10, 14))
     floor_speed, gravity = floor.amplitude / floor.period, 10.0 ** rng.uniform(-2, 2)
     phase = rng.choice((0.0, rng.uniform(0.0, 0.5) * floor.period))

@@ -1,53 +1,56 @@
-"""What of a gas must not change, or not go further, measured between two snapshots."""
+"""Violations of conservation laws and bounds of a gas, measured on its snapshots."""
 
 import numpy as np
-from brute_force.beside import brute_force_from
+from brute_force.comparison import brute_force_from
 
 
 def gain_of_momentum(before, after, world):
-    """Change of the momentum beside the mean flow, over the sum of all speeds.
+    """Change of the momentum relative to the mean flow, over the sum of all speeds.
 
     A particle that becomes another image loses U at the height L: v_x - U y/L stays.
     """
-    drifts, mass = [], 1.0 if before.company is None else before.company.mass[:, None]
+    drifts, mass = [], 1.0 if before.bodies is None else before.bodies.mass[:, None]
     for shot in (before, after):
         v = shot.velocity.copy()
         if world.shear:
             v[:, 0] -= world.shear * shot.position[:, 1] / world.box[1]
         drifts.append((mass * v).sum(axis=0))
-    # places are rounded on the scale of the box, and what crosses it on that of U
+    # positions are rounded on the scale of the box, velocities of crossings on the scale of U
     size = world.shear * (1.0 + world.shear * after.time / 7.0) * np.max(mass)
     size += np.abs(mass * after.velocity).sum()
     return np.abs(drifts[1] - drifts[0]).max() / size
 
 
 def beyond_cone(before, after, pair, world):
-    """(|J_t| - mu |J_n|)/|J| of the contact of a pair that is over at this instant."""
+    """(|J_t| - mu |J_n|)/|J| of the last contact of a pair, 0 if its impulse is inside the cone."""
     i, j = pair
     impulse = after.velocity[i] - before.velocity[i]
     impulse[-1] += world.gravity * (after.time - before.time)
     x = after.position[i] - after.position[j]
-    lengths = np.array([side or 1e300 for side in world.box])  # of an open axis: no image
+    lengths = np.array([side or 1e300 for side in world.box])  # no images along an open axis
     n = x - lengths * np.round(x / lengths)
     n /= np.linalg.norm(n)
-    size = np.linalg.norm(impulse)
-    # a velocity is known to a rounding of itself, of which a weak impulse is little
+    impulse_size = np.linalg.norm(impulse)
+    # velocities are rounded, which matters for weak impulses
     speed = np.abs(before.velocity[[i, j]]).max() + world.gravity * (after.time - before.time)
     normal = impulse @ n
-    along = np.linalg.norm(impulse - normal * n)
+    tangential = np.linalg.norm(impulse - normal * n)
     mu = brute_force_from(world, before).material(i, j)[2]
-    return max(0.0, along - mu * abs(normal)) / (size + 1e-3 * speed)
+    return max(0.0, tangential - mu * abs(normal)) / (impulse_size + 1e-3 * speed)
 
 
 def outside(shot, world):
-    """By how much a particle reaches through a wall or the floor, in a."""
+    """The greatest depth of a particle in a wall or in the floor, in a."""
     depth, radius = 0.0, brute_force_from(world, shot).radius
     if world.walls is not None:
         x = shot.position[:, 0]
         depth = max(depth, (radius - x).max(), (x + radius - world.walls[0]).max())
     for side in world.sides:
-        inside = side.inwards * (shot.position[:, side.axis] - side.at) - radius
-        depth = max(depth, ((side.shift(shot.time) if side.goes_in else 0.0) - inside).max())
+        distance_inside = side.inwards * (shot.position[:, side.axis] - side.at) - radius
+        depth = max(
+            depth,
+            ((side.shift(shot.time) if side.moves_along_normal else 0.0) - distance_inside).max(),
+        )
     if world.floor is not None:
         surface, _ = brute_force_from(world, shot).surface(0.0)
         depth = max(depth, (surface + radius - shot.position[:, -1]).max())

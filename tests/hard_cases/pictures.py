@@ -1,4 +1,4 @@
-"""Pictures of the hard cases: how much room each leaves, and what some of them look like."""
+"""Pictures of the hard cases: an overview of all margins, and pictures of some families."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -9,38 +9,47 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from hard_cases.catalogue import Margin
-from roughgas.show.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, TWO_WIDE
+from roughgas.show.style import FAINT, GREY, LINE_STYLES, PARAMETERS, THEORY, TWO_WIDE
 from roughgas.theory import cooling_ratio
 
 Series = Mapping[str, Mapping[str, list[float]]]
 
-FARTHEST = 1e5  # of factors that are told apart; numbers beyond, and without any error, are counted
+FARTHEST = 1e5  # end of the axis of factors; numbers beyond it, and exact ones, are only counted
 ROW = 0.24  # inches
 
 matplotlib.rcParams.update(PARAMETERS)
 
 
 def room(row: Margin) -> float:
-    """The factor by which a measured number could be worse; inf where it is what it must be."""
-    one, other = row.limit, row.measured
+    """Return the room of a margin: limit over number or its inverse, at least 1; inf if exact."""
+    numerator, denominator = row.limit, row.measured
     if row.sense == "at least":
-        one, other = other, one
-    return one / other if other not in (0.0, one) else math.inf
+        numerator, denominator = denominator, numerator
+    return numerator / denominator if denominator not in (0.0, numerator) else math.inf
 
 
 def overview(margins: list[Margin]) -> Figure:
-    """One line for each family, with a symbol for each number that it measures, over the factor by
-    which that could be worse. The table has the cases."""
+    """Draw a line per family, with a symbol at the room of each of its margins."""
     factors: dict[str, list[float]] = {}
     for row in margins:
         factors.setdefault(row.family, []).append(room(row))
     figure = Figure(figsize=(TWO_WIDE, ROW * len(factors) + 1.0), layout="constrained")
     axes = figure.subplots()
-    for height, found in enumerate(map(np.array, factors.values())):
-        near, far = found[found < FARTHEST], int(np.sum(found >= FARTHEST))
-        axes.plot(near, np.full(near.size, height), "o", color=LOOKS[0].colour, ms=4, alpha=0.6)
-        beside = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 8}
-        axes.annotate(str(far), (FARTHEST, height), **beside)
+    for height, family_factors in enumerate(map(np.array, factors.values())):
+        shown, beyond_axis = (
+            family_factors[family_factors < FARTHEST],
+            int(np.sum(family_factors >= FARTHEST)),
+        )
+        axes.plot(
+            shown, np.full(shown.size, height), "o", color=LINE_STYLES[0].colour, ms=4, alpha=0.6
+        )
+        label_style = {
+            "xytext": (4, 0),
+            "textcoords": "offset points",
+            "va": "center",
+            "fontsize": 8,
+        }
+        axes.annotate(str(beyond_axis), (FARTHEST, height), **label_style)
     axes.set_xscale("log")
     axes.set(xlim=(0.7, FARTHEST), ylim=(len(factors) - 0.4, -0.6))
     axes.set_yticks(range(len(factors)), factors, fontsize=8)
@@ -54,7 +63,7 @@ def overview(margins: list[Margin]) -> Figure:
 
 
 def collapse(series: Series) -> Figure:
-    """The chain that a bed collapses in, and what the contact-time model makes of it."""
+    """Draw the chain in which a bed collapses, and R with the contact-time model."""
     figure, (bed, model) = _pair(1.15, 1.0)
     _chain(bed, series["collapse_chain"])
     _contact_times(model, series["contact_time"])
@@ -62,26 +71,26 @@ def collapse(series: Series) -> Figure:
 
 
 def chaos(series: Series) -> Figure:
-    """How fast roundings grow: beside exact arithmetic, and on the way back to the start."""
-    figure, (beside, back) = _pair(1.0, 1.0)
-    _separation(beside, series["separation, gas"])
-    _way_back(back, series["time_reversal"])
+    """Draw the growth of roundings: against exact arithmetic, and in reversed gases."""
+    figure, (separation, return_error) = _pair(1.0, 1.0)
+    _separation(separation, series["separation, gas"])
+    _return_errors(return_error, series["time_reversal"])
     return figure
 
 
 def cooling(series: Series) -> Figure:
-    """A gas whose energy falls by hundreds of orders of magnitude, and its R."""
+    """Draw the energy and R of gases that cool by hundreds of orders of magnitude."""
     figure, (energy, ratio) = _pair(1.0, 1.0)
     columns = {name: np.array(numbers) for name, numbers in series["cooling_far"].items()}
     restitutions = [name.split()[1] for name in columns if name.startswith("R ")]
-    for r, look in zip(restitutions, LOOKS, strict=False):
+    for r, look in zip(restitutions, LINE_STYLES, strict=False):
         style = {"color": look.colour, "linestyle": look.line, "label": f"$r = {r}$"}
         energy.plot(columns["collisions"], columns[f"log10_energy {r}"], **style)
         ratio.plot(columns["collisions"], columns[f"R {r}"], **style)
     energy.axhline(-308, color=FAINT, lw=0.8, linestyle=(0, (1, 2)))
     at_rim = energy.get_yaxis_transform()
     energy.text(0.98, -262, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
-    for r, look in zip(restitutions, LOOKS, strict=False):
+    for r, look in zip(restitutions, LINE_STYLES, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
     ratio.set_title("thin lines: theory of free cooling", fontsize=8, loc="left")
     energy.set_ylabel(r"$\log_{10} E_\mathrm{trans}$")
@@ -106,13 +115,13 @@ def _pair(*widths):
 
 
 def _chain(axes, chain):
-    """Particles about the chain, in the images closest to it; `last` is the time since contact."""
+    """Draw the particles near the chain in their nearest images; `last`: time since contact."""
     x, y, last = (np.array(chain[name]) for name in ("x", "y", "last"))
     involved = last < 1e-6
     middle = np.median(x[involved]), np.median(y[involved])
     x = middle[0] + (x - middle[0] + 25.0) % 50.0 - 25.0
     for k in range(x.size):
-        colour = LOOKS[1].colour if involved[k] else "#DDDDDD"
+        colour = LINE_STYLES[1].colour if involved[k] else "#DDDDDD"
         axes.add_patch(Circle((x[k], y[k]), 1.0, fc=colour, ec=GREY, lw=0.4))
     half = 13.0
     axes.set_xlim(middle[0] - half, middle[0] + half)
@@ -120,22 +129,24 @@ def _chain(axes, chain):
     axes.set_aspect("equal")
     axes.set_xlabel("$x/a$")
     axes.set_ylabel("$y/a$")
-    axes.set_title("a bed at $r = 0.6$ collapses in this chain", fontsize=8, loc="left")
+    axes.set_title("disks in the last contacts of a bed, $r = 0.6$", fontsize=8, loc="left")
 
 
 def _contact_times(axes, model):
     duration, R, error, touched = (
         np.array(model[name]) for name in ("duration", "R", "error", "touched")
     )
-    axes.errorbar(duration, R, error, fmt=LOOKS[0].marker, color=LOOKS[0].colour, capsize=1.5)
+    axes.errorbar(
+        duration, R, error, fmt=LINE_STYLES[0].marker, color=LINE_STYLES[0].colour, capsize=1.5
+    )
     axes.set_xscale("log")
     axes.set_ylim(0.18, 0.3)
     axes.set_xlabel(r"contact time $t_c/T$")
-    axes.set_ylabel("$R$", color=LOOKS[0].colour)
+    axes.set_ylabel("$R$", color=LINE_STYLES[0].colour)
     share = axes.twinx()
-    share.plot(duration, touched, LOOKS[1].marker + "--", color=LOOKS[1].colour, ms=3.5)
+    share.plot(duration, touched, LINE_STYLES[1].marker + "--", color=LINE_STYLES[1].colour, ms=3.5)
     share.set_yscale("log")
-    share.set_ylabel("share of contacts changed", color=LOOKS[1].colour)
+    share.set_ylabel("share of contacts changed", color=LINE_STYLES[1].colour)
     axes.set_title(r"with the model, $r = 0.6$, $\beta = 0$", fontsize=8, loc="left")
 
 
@@ -143,24 +154,24 @@ def _separation(axes, columns):
     collision, kernel, expected = (
         np.array(columns[name]) for name in ("collision", "kernel", "expected")
     )
-    axes.semilogy(collision, kernel, "o", color=LOOKS[0].colour, ms=3, label="this program")
+    axes.semilogy(collision, kernel, "o", color=LINE_STYLES[0].colour, ms=3, label="this program")
     axes.plot(collision, expected, color=THEORY, label="prediction from roundings")
     axes.set_xlabel("collisions of eight disks")
     axes.set_ylabel("distance from exact simulation")
     axes.legend(loc="upper left")
-    axes.set_title("rounding errors grow by chaos", fontsize=8, loc="left")
+    axes.set_title("growth of rounding errors", fontsize=8, loc="left")
 
 
-def _way_back(axes, columns):
+def _return_errors(axes, columns):
     length = np.array(columns["collisions"])
     names = [name.removeprefix("error of ") for name in columns if name.startswith("error of ")]
-    for name, look in zip(names, LOOKS, strict=False):
+    for name, look in zip(names, LINE_STYLES, strict=False):
         error, prediction = (
-            np.array(columns[f"{what} {name}"]) for what in ("error of", "prediction for")
+            np.array(columns[f"{column} {name}"]) for column in ("error of", "prediction for")
         )
         axes.semilogy(length, error, look.marker, color=look.colour, ms=3, label=name)
-        seen = prediction < 1.0
-        axes.plot(length[seen], prediction[seen], color=look.colour, linestyle=look.line, lw=0.9)
+        small = prediction < 1.0
+        axes.plot(length[small], prediction[small], color=look.colour, linestyle=look.line, lw=0.9)
     axes.set_xlabel("collisions per particle before the reversal")
     axes.set_ylabel("distance from the start")
     axes.legend(loc="lower right")

@@ -1,9 +1,9 @@
-"""From what the families measured to one table and its pictures.
+"""Write the table of all margins and their pictures.
 
     python -m hard_cases.report FAMILY.json... --table TABLE.md --pictures FILE.pdf FILE.png...
 
-Pictures are told apart by the names of their files: hard_cases shows every margin, hard_cases_x
-what was kept for the picture x (pictures.py).
+The name of a file selects its picture: hard_cases shows all margins, hard_cases_x is the picture x
+(pictures.py).
 """
 
 import argparse
@@ -30,10 +30,10 @@ could be.
 
 def main() -> None:
     arguments = _arguments()
-    found = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.families]
-    margins = [Margin(**row) for one in found for row in one["margins"]]
-    remedies = [Remedy(**row) for one in found for row in one["remedies"]]
-    series = {name: columns for one in found for name, columns in one["series"].items()}
+    families = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.families]
+    margins = [Margin(**row) for family in families for row in family["margins"]]
+    remedies = [Remedy(**row) for family in families for row in family["remedies"]]
+    series = {name: columns for family in families for name, columns in family["series"].items()}
     write_text(arguments.table, table(margins, remedies, arguments.full))
     for name, files in itertools.groupby(sorted(arguments.pictures), key=lambda path: path.stem):
         picture = name.removeprefix("hard_cases").removeprefix("_")
@@ -42,22 +42,26 @@ def main() -> None:
 
 
 def table(margins: list[Margin], remedies: list[Remedy], full: bool) -> str:
-    """The whole table as Markdown: a section a family, within it a paragraph a case."""
+    """Return the table as Markdown, with a section per family and a paragraph per case."""
     cases = {(row.family, row.case) for row in margins}
-    parts = [
+    sections = [
         HEAD.format(
             scale="" if full else " at a smaller scale, with few tries",
             cases=len(cases),
             margins=len(margins),
-            remedies=len({(one.family, one.case) for one in remedies}),
+            remedies=len({(remedy.family, remedy.case) for remedy in remedies}),
         )
     ]
     for family, of_family in itertools.groupby(margins, key=lambda row: row.family):
-        parts.append(f"\n## {family}\n")
+        sections.append(f"\n## {family}\n")
         for (case, danger), rows in itertools.groupby(of_family, key=lambda r: (r.case, r.danger)):
-            taken = [one.remedy for one in remedies if (one.family, one.case) == (family, case)]
-            parts.append(_case(case, danger, list(rows), taken))
-    return "".join(parts)
+            taken = [
+                remedy.remedy
+                for remedy in remedies
+                if (remedy.family, remedy.case) == (family, case)
+            ]
+            sections.append(_case(case, danger, list(rows), taken))
+    return "".join(sections)
 
 
 def _case(case, danger, rows, taken):
@@ -77,7 +81,7 @@ def _case(case, danger, rows, taken):
 
 
 def number(tried: int) -> str:
-    """A count with its thousands apart; powers of ten from a million on."""
+    """Return a count with separated thousands, or with a power of ten from a million on."""
     if tried >= 10**6:
         mantissa, _, power = f"{tried:.1e}".partition("e")
         return f"{mantissa.removesuffix('.0')}e{int(power)}"

@@ -9,9 +9,9 @@ from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Spin
 from roughgas.kernel import contact
-from roughgas.kernel.memory import new_state
-from roughgas.kernel.particles import alike
-from roughgas.kernel.record import Sampling, columns, record
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.particles import identical_pair
+from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 from roughgas.kernel.state import COLLISIONS
 
 response = from_python(contact.response)
@@ -22,6 +22,7 @@ ROUNDING = 2.0**-53  # the largest relative error of one operation
 
 
 def pair(dimension, side):
+    """Settings of two particles in a box."""
     return settings("gas" if dimension == 2 else "spheres", 2, [side] * dimension)
 
 
@@ -31,26 +32,28 @@ def energy(shot, q):
 
 
 def spinning_gas(experiment, beta, seed=2):
-    """Scene and state of an elastic gas whose particles spin from the start."""
+    """Scene and state of an elastic gas with random spins."""
     scene, state = begin(experiment, 1.0, beta, seed)
     state.spin[:] = np.random.default_rng(seed).standard_normal(state.spin.shape)
     return scene, state
 
 
 def run_to(state, scene, collisions):
-    """Run to so many collisions in all; a single call ends before, after a thousand spans."""
+    """Run to a total number of collisions; a single call may end after a thousand spans."""
     while state.counts[COLLISIONS] < collisions:
         run(state, scene, 1, collisions=int(collisions - state.counts[COLLISIONS]))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_conserved(margins, dimension):
-    """What r = 1 and beta = +-1 conserve. The energy drifts in proportion to the collisions: by
-    what normals are too short on average (see test_normal), and what 1/(1 + q) is rounded by. The
-    bound is a rounding of all the energy in ten collisions, 1e-17 a collision.
+def test_elastic_contacts_conserve_energy_and_momentum(margins, dimension):
+    """At r = 1 and beta = +-1, up to roundings.
 
-    The momentum makes a random walk of roundings, two a collision along each axis, whose rms is
-    1e-16 at most: more than six times its length is met by chance once in 1e8 times.
+    The energy drifts in proportion to the collisions, by the mean error of the normals (see
+    test_normals_are_unit_vectors_on_average) and by the rounding of 1/(1 + q). The bound is a
+    rounding of the total energy in ten collisions, 1e-17 per collision.
+
+    The momentum makes a random walk of roundings, two per collision along each axis, whose rms is
+    at most 1e-16: by chance one in 1e8 exceeds six times its length.
     """
     experiment = DISKS if dimension == 2 else SPHERES
     q, collisions = theory.moment_of_inertia(dimension), margins.size(100_000, 10_000_000)
@@ -61,46 +64,50 @@ def test_conserved(margins, dimension):
         run_to(state, scene, collisions)
         end = snapshot(state, scene)
         drift = abs(energy(end, q) / start - 1.0) / collisions * 1e7
-        what = f"drift of the energy in 1e7 collisions, beta = {beta:g}, D = {dimension}"
-        margins.at_most(what, drift, 1e-10, **tried)
+        quantity = f"drift of the energy in 1e7 collisions, beta = {beta:g}, D = {dimension}"
+        margins.at_most(quantity, drift, 1e-10, **tried)
         momentum = np.abs(end.velocity.sum(axis=0)).max() / np.sqrt(2.0 * collisions)
-        what = f"momentum, over the root of the roundings [m a/T], beta = {beta:g}, D = {dimension}"
-        margins.at_most(what, momentum, 6e-16, **tried)
+        quantity = (
+            f"momentum, over the root of the roundings [m a/T], beta = {beta:g}, D = {dimension}"
+        )
+        margins.at_most(quantity, momentum, 6e-16, **tried)
         if beta == -1.0:
-            what = f"spins that changed, beta = -1, D = {dimension}"
-            margins.at_most(what, (spin != state.spin).sum(), 0, **tried)
+            quantity = f"spins that changed, beta = -1, D = {dimension}"
+            margins.at_most(quantity, (spin != state.spin).sum(), 0, **tried)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_normal(margins, dimension):
-    """n.n - 1, the share of its normal motion that a contact adds, on average over contacts of
-    pairs that stand anywhere in a box of 25 a.
+def test_normals_are_unit_vectors_on_average(margins, dimension):
+    """The mean of n.n - 1, the share of its normal energy that a contact adds, over pairs anywhere
+    in a box of 25 a.
 
-    A contact adds rms 1e-16; over 1e5 of them the mean is known to 3e-19. The bound is a quarter of
-    a rounding; what is left comes from the components' own grid.
+    A contact adds rms 1e-16; over 1e5 contacts the mean is known to 3e-19. The bound is a quarter
+    of a rounding; the remainder comes from the grid of the components.
     """
     rng, contacts = np.random.default_rng(dimension), margins.size(100_000, 1_000_000)
     normals = rng.standard_normal((contacts, dimension))
     normals *= 2.0 / np.linalg.norm(normals, axis=1)[:, None]
-    places = rng.uniform(2.0, 23.0, normals.shape)
-    found = np.array([direction(2.0, x) for x in map(tuple, (places + normals - places).tolist())])
-    excess = (found.astype(np.longdouble) ** 2).sum(axis=1) - 1  # to 1e-19
-    what, tried = f"mean of n.n - 1, D = {dimension}", {"tried": contacts, "unit": "contacts"}
-    margins.at_most(what, abs(excess.mean()), ROUNDING / 4.0, **tried)
+    positions = rng.uniform(2.0, 23.0, normals.shape)
+    computed = np.array(
+        [direction(2.0, x) for x in map(tuple, (positions + normals - positions).tolist())]
+    )
+    excess = (computed.astype(np.longdouble) ** 2).sum(axis=1) - 1  # to 1e-19
+    quantity, tried = f"mean of n.n - 1, D = {dimension}", {"tried": contacts, "unit": "contacts"}
+    margins.at_most(quantity, abs(excess.mean()), ROUNDING / 4.0, **tried)
     margins.at_most(
         f"largest of n.n - 1, D = {dimension}", abs(excess).max(), 6 * ROUNDING, **tried
     )
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_angular_momentum(margins, dimension):
-    """About a fixed point some ten radii off, over the largest value that its terms could have.
+def test_contacts_conserve_the_angular_momentum(margins, dimension):
+    """About a fixed point some ten radii away, relative to the sum of the sizes of its terms.
 
-    Some ten roundings: of positions, velocities, and spins, each before and after.
+    Some ten roundings: of positions, velocities and spins, before and after.
     """
     scene, _ = begin(pair(dimension, 20), 1.0, 1.0)
     q, rng = theory.moment_of_inertia(dimension), np.random.default_rng(dimension)
-    pairs_tried, worst = margins.size(500, 10_000), 0.0
+    pairs_tried, largest_change = margins.size(500, 10_000), 0.0
     for _ in range(pairs_tried):
         scene = scene._replace(restitution=rng.uniform(0, 1), roughness=rng.uniform(-1, 1))
         n, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
@@ -112,9 +119,9 @@ def test_angular_momentum(margins, dimension):
         run(state, scene, 1, interval=1.0)
         assert state.counts[COLLISIONS] == 1
         change = angular_momentum(snapshot(state, scene), q)[0] - before
-        worst = max(worst, np.linalg.norm(change) / largest)
-    what = f"change of the angular momentum, over its largest value, D = {dimension}"
-    margins.at_most(what, worst, 10 * ROUNDING, tried=pairs_tried, unit="contacts")
+        largest_change = max(largest_change, np.linalg.norm(change) / largest)
+    quantity = f"change of the angular momentum, over its largest value, D = {dimension}"
+    margins.at_most(quantity, largest_change, 10 * ROUNDING, tried=pairs_tried, unit="contacts")
 
 
 def angular_momentum(shot, q):
@@ -127,12 +134,12 @@ def angular_momentum(shot, q):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_inverse(margins, dimension):
-    """The rule with 1/r and 1/beta undoes the one with r and beta, these down to 1e-3 in size.
+def test_inverse_coefficients_undo_a_contact(margins, dimension):
+    """The rule with 1/r and 1/beta undoes the rule with r and beta, down to 1e-3 in size.
 
-    It multiplies roundings of the speed by 1/r and 1/beta: some ten of them are allowed for.
+    It multiplies roundings of the speed by 1/r and 1/beta: the bound is some ten of these.
     """
-    rng, worst = np.random.default_rng(dimension), 0.0
+    rng, largest_error = np.random.default_rng(dimension), 0.0
     contacts = margins.size(5000, 100_000)
     q = theory.moment_of_inertia(dimension)
     for _ in range(contacts):
@@ -142,27 +149,35 @@ def test_inverse(margins, dimension):
         r, beta = 10.0 ** rng.uniform(-3, 0, 2) * [1.0, rng.choice([-1.0, 1.0])]
         n /= np.linalg.norm(n)
         after = applied((r, beta), q, n, v, w)
-        back = applied((1.0 / r, 1.0 / beta), q, n, *after)
-        error = np.hypot(np.linalg.norm(back[0] - v), np.linalg.norm(back[1] - w))
-        worst = max(worst, error * min(r, abs(beta)) / np.hypot(*map(np.linalg.norm, (v, w))))
-    what = f"error of what is got back, times r or beta, over the speed, D = {dimension}"
-    margins.at_most(what, worst, 20 * ROUNDING, tried=contacts, unit="contacts")
+        restored = applied((1.0 / r, 1.0 / beta), q, n, *after)
+        error = np.hypot(np.linalg.norm(restored[0] - v), np.linalg.norm(restored[1] - w))
+        largest_error = max(
+            largest_error, error * min(r, abs(beta)) / np.hypot(*map(np.linalg.norm, (v, w)))
+        )
+    quantity = f"error of what is got back, times r or beta, over the speed, D = {dimension}"
+    margins.at_most(quantity, largest_error, 20 * ROUNDING, tried=contacts, unit="contacts")
 
 
 def applied(material, q, n, v, w):
     """Relative velocity and sum of the spins after a contact."""
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(Effects(spin=Spin(q)), material, *vectors, 0.5, alike(Spin(q)))
-    return v - 2.0 * np.array(push), w + 2.0 * np.array(turn)
+    impulse, spin_change = response(
+        Effects(spin=Spin(q)), material, *vectors, 0.5, identical_pair(Spin(q))
+    )
+    return v - 2.0 * np.array(impulse), w + 2.0 * np.array(spin_change)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_parting(margins, dimension):
-    """One contact a pair, for r from 0 and 1e-16 to 1, and normal velocities from 1e-12 to 1 of
-    the tangential one: two free particles that have met never do again.
+def test_a_free_pair_collides_once(margins, dimension):
+    """For r = 0 and from 1e-16 to 1, and normal velocities from 1e-12 to 1 of the tangential one,
+    two free particles never meet again.
     """
     scene, _ = begin(pair(dimension, 14), 0.0, -1.0)
-    rng, most, pairs_tried = np.random.default_rng(dimension), 0, margins.size(1000, 20_000)
+    rng, most_contacts, pairs_tried = (
+        np.random.default_rng(dimension),
+        0,
+        margins.size(1000, 20_000),
+    )
     row = np.empty((1, len(columns(scene))))
     for _ in range(pairs_tried):
         r = rng.choice([0.0, 1.0, 1.0]) * 10.0 ** rng.uniform(-16, 0)
@@ -173,7 +188,7 @@ def test_parting(margins, dimension):
         position = 7.0 + np.array([0.0 * n, (2.0 + gap) * n])
         velocity = rng.standard_normal(dimension) + np.array([0.0 * n, across - approach * n])
         state = new_state(scene, position, velocity, np.zeros((2, 2 * dimension - 3)))
-        # a pair that does is stopped, as a collapse would be: here it is only counted
-        record(state, scene, Sampling(1.0, 100, 0), row)
-        most = max(most, state.counts[COLLISIONS])
-    margins.at_most(f"contacts of a pair, D = {dimension}", most, 1, pairs_tried, "pairs")
+        # a pair that meets again and again is stopped as a collapse; here contacts are counted
+        record(state, scene, Sampling(1.0, 100, 0), row, allocate_frames(state, 0))
+        most_contacts = max(most_contacts, state.counts[COLLISIONS])
+    margins.at_most(f"contacts of a pair, D = {dimension}", most_contacts, 1, pairs_tried, "pairs")

@@ -1,10 +1,11 @@
 """When two particles meet.
 
-The doubles that go in are exact numbers to the 50 digits that the times are compared with.
+References are computed in 50 digits from the exact values of the same doubles.
 """
 
 import mpmath
 import numpy as np
+import pytest
 from compiled import from_python
 
 from roughgas.kernel import prediction
@@ -13,12 +14,12 @@ time_to_contact = from_python(prediction.time_to_contact)
 
 
 def exact(*vectors):
-    """Vectors of doubles in mpmath's precision of the moment."""
+    """Vectors of doubles as lists of mpmath numbers."""
     return ([mpmath.mpf(float(c)) for c in vector] for vector in vectors)
 
 
 def closest(x, u):
-    """Least distance of two paths, in a."""
+    """Smallest distance of two paths, in a."""
     with mpmath.workdps(50):
         x, u = exact(x, u)
         time = -mpmath.fdot(x, u) / mpmath.fdot(u, u)
@@ -34,13 +35,13 @@ def gap_at(x, u, time):
 
 
 def approach(x, u):
-    """Normal velocity with which a touching pair approaches, over its relative velocity."""
+    """Normal velocity of approach of a touching pair, over its relative velocity."""
     with mpmath.workdps(50):
         return float(-mpmath.fdot(*exact(x, u))) / (2.0 * float(np.linalg.norm(u)))
 
 
 def exact_time(x, u):
-    """The first time at which two paths that meet do so."""
+    """The time of the first contact of two paths that meet."""
     with mpmath.workdps(50):
         x, u = exact(x, u)
         b, uu = mpmath.fdot(x, u), mpmath.fdot(u, u)
@@ -52,15 +53,16 @@ def directions(rng, dimension):
     return np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
 
 
-def decades(rng, least, most):
-    """A random number whose logarithm is uniform between these powers of ten."""
-    return 10.0 ** rng.uniform(least, most)
+def decades(rng, lowest, highest):
+    """A random number, log-uniform between these powers of ten."""
+    return 10.0 ** rng.uniform(lowest, highest)
 
 
 def heading(rng, dimension, gap, impact):
-    """A pair so far apart along its path that misses a head-on contact by 2 impact a.
+    """Relative position x and velocity u, tuples, of a pair with this gap along its path and with
+    an impact parameter of 2 impact a.
 
-    As tuples of doubles (x, u), the relative speed being anything from 1e-8 to 1e8 a/T.
+    The relative speed is between 1e-8 and 1e8 a/T.
     """
     along, across = directions(rng, dimension)
     behind = gap + 2.0 * np.sqrt(max(0.0, 1.0 - impact**2))
@@ -68,12 +70,12 @@ def heading(rng, dimension, gap, impact):
 
 
 def floats(vector):
-    """A vector as the kernel takes it."""
+    """A vector as a tuple of doubles."""
     return tuple(map(float, vector))
 
 
-def test_grazing(margins):
-    """Bounds: three roundings of the distance between the paths, each 2^-53 of the distance."""
+def test_grazing_contacts_are_neither_missed_nor_invented(margins):
+    """Bounds: three roundings of the distance between the particles, each 2^-53 of it."""
     rng = np.random.default_rng(1)
     pairs_tried = margins.size(quick=3000, full=100_000)
     missed = invented = 0.0
@@ -91,11 +93,11 @@ def test_grazing(margins):
     margins.at_most("gap of an invented contact, over the distance", invented, 4e-16, **tried)
 
 
-def test_close_pairs(margins):
-    """Where a pair is at the time predicted: gaps from 1e-14 to 1e-6 a, head-on or up to grazing.
+def test_close_pairs_touch_at_the_predicted_time(margins):
+    """Gaps at the predicted time, of pairs 1e-14 to 1e-6 a apart, head-on or up to grazing.
 
-    Bounds: what x.x is rounded by, at or just above 4, is at most 4 (in space 6) times 2^-52, and a
-    gap is a quarter of x.x - 4; all else is as small as the gap.
+    Bounds: x.x, at or just above 4, is rounded by at most 4 (in space 6) times 2^-52, and a gap is
+    a quarter of x.x - 4; all other errors are as small as the gap.
     """
     rng = np.random.default_rng(2)
     pairs_tried = margins.size(quick=4000, full=100_000)
@@ -109,7 +111,7 @@ def test_close_pairs(margins):
     margins.at_most("gap at the predicted time, in space [a]", error[1], 3.4e-16, **tried)
 
 
-def test_far_pairs(margins):
+def test_far_pairs_touch_at_the_predicted_time(margins):
     """Gaps from 1 to 1e4 a, with any impact parameter up to grazing.
 
     Bounds: x.x, x.u and x cross u are each rounded by one or two times 2^-53 of their largest
@@ -133,16 +135,17 @@ def test_far_pairs(margins):
     )
 
 
-def test_overlapping_pairs(margins):
+@pytest.mark.slow
+def test_overlapping_pairs_touch_if_they_approach(margins):
     """Overlaps from 0 to 1e-10 a, and normal velocities down to 1e-17 of the relative one.
 
-    An approach is told from a recession up to the rounding of x.u, at |x| = 2 a. A contact that is
-    now leaves an overlap as it is; one that closes a gap is bounded as in test_close_pairs, and
-    where it grazes, the discriminant adds as much again.
+    Approach and recession are distinguished up to the rounding of x.u, at |x| = 2 a. A contact at
+    once does not change the overlap; a contact that closes a gap is bounded as in
+    test_close_pairs_touch_at_the_predicted_time, and if it grazes, the discriminant doubles this.
     """
     rng = np.random.default_rng(4)
     pairs_tried = margins.size(quick=10_000, full=100_000)
-    lost = again = moved = 0.0
+    missed = repeated = displaced = 0.0
     for k in range(pairs_tried):
         n, across = directions(rng, 2 + k % 2)
         overlap = rng.choice([0.0, 1.0, 1.0]) * decades(rng, -17, -10)
@@ -151,12 +154,12 @@ def test_overlapping_pairs(margins):
         u = floats(decades(rng, -8, 8) * (normal * n + across))
         time, gap = time_to_contact(x, u, 2.0), gap_at(x, u, 0)
         if time < np.inf:
-            moved = max(moved, abs(gap_at(x, u, time) - min(gap, 0.0)))
-            again = max(again, -approach(x, u))
+            displaced = max(displaced, abs(gap_at(x, u, time) - min(gap, 0.0)))
+            repeated = max(repeated, -approach(x, u))
         elif gap <= 0.0:
-            lost = max(lost, approach(x, u))
+            missed = max(missed, approach(x, u))
     tried = {"tried": pairs_tried, "unit": "pairs"}
     speed = "over the relative one"
-    margins.at_most(f"normal velocity of a contact that is lost, {speed}", lost, 4e-16, **tried)
-    margins.at_most(f"normal velocity of one that is repeated, {speed}", again, 4e-16, **tried)
-    margins.at_most("gap at the contact, or change of the overlap [a]", moved, 7e-16, **tried)
+    margins.at_most(f"normal velocity of a contact that is lost, {speed}", missed, 4e-16, **tried)
+    margins.at_most(f"normal velocity of one that is repeated, {speed}", repeated, 4e-16, **tried)
+    margins.at_most("gap at the contact, or change of the overlap [a]", displaced, 7e-16, **tried)

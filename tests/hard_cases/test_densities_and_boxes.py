@@ -4,35 +4,33 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
+from brute_force import Comparison, begin, largest_overlap, run, scene_of, settings
+from raw import build, check, run_point
 from schedules import COOLING, STEADY
 
 from roughgas.base import InputError
-from roughgas.scene import build
-from roughgas.scene.initial import check
-from roughgas.simulation.point import run_point
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
 SPHERES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.6)  # shares of the volume
 ROUNDING = 2.0**-53
-AT_REST = {"floor": {"amplitude": 0.0}}  # the gas on it keeps its energy
-BETWEEN = AT_REST | {"walls": {"restitution": 1.0, "roughness": -1.0}}
+FLOOR_AT_REST = {"floor": {"amplitude": 0.0}}  # the gas on it keeps its energy
+BETWEEN_WALLS = FLOOR_AT_REST | {"walls": {"restitution": 1.0, "roughness": -1.0}}
 
 
 def lossless(kernel, particles, box, **effects):
-    """A scene that neither collapses nor comes to rest."""
+    """An elastic smooth (experiment, r, beta), which neither collapses nor comes to rest."""
     return settings(kernel, particles, box, **effects), 1.0, -1.0
 
 
 def check_run(margins, scenes, collisions):
-    """Run (experiment, r, beta), and measure overlaps, and how far particles are from the box."""
+    """Run each (experiment, r, beta), and measure overlaps and distances outside the box."""
     overlap = outside = 0.0
     for experiment, r, beta in scenes:
         scene, world = scene_of(experiment, r, beta)
         _, state = begin(experiment, r, beta, 1)
         run(state, scene, collisions // 50, collisions=50)
         size = max(np.ptp(state.trajectory[:, k]) for k in range(len(scene.box))) + scene.extent
-        # places are sums of lengths up to the size of the box, and squares of 2 a
+        # positions are sums of lengths up to the size of the box, and overlaps squares of 2 a
         overlap = max(overlap, largest_overlap(state, scene, world) / (ROUNDING * size))
         outside = max(outside, _outside(state, experiment) / (ROUNDING * size))
         assert np.isfinite(state.trajectory).all() and state.counts[0] >= collisions
@@ -42,35 +40,40 @@ def check_run(margins, scenes, collisions):
 
 
 def _outside(state, experiment):
-    """How far a particle was out of its box when something happened to it last."""
-    found = 0.0
-    for k, length in enumerate(experiment["box"]):
-        x, edge = state.trajectory[:, k], 0.0
-        if k == 0 and "walls" in experiment["effects"]:
+    """Greatest distance of a particle outside its box at its last event."""
+    farthest = 0.0
+    for axis, length in enumerate(experiment["box"]):
+        x, edge = state.trajectory[:, axis], 0.0
+        if axis == 0 and "walls" in experiment["effects"]:
             edge = 1.0
         above = -math.inf if length == "open" else np.max(x) - (length - edge)
-        found = max(found, above, edge - np.min(x))
-    return found
+        farthest = max(farthest, above, edge - np.min(x))
+    return farthest
 
 
-def check_beside(margins, scenes, segments, collisions):
-    """Compare (experiment, r, beta) with the brute force.
+def check_against_brute_force(margins, scenes, segments, collisions):
+    """Compare each (experiment, r, beta) with the brute force.
 
-    The limit is that of Beside.assert_same: what roundings at the start of a segment become in one
-    trial, and some hundred times that, since a grazing contact multiplies either.
+    The limit, as in Comparison.assert_same, is some hundred times the growth of roundings at the
+    start of a segment, since grazing contacts multiply single errors.
     """
-    worst = 0.0
+    largest_ratio = 0.0
     for experiment, r, beta in scenes:
         scene, world = scene_of(experiment, r, beta)
         _, state = begin(experiment, r, beta, 1)
-        beside = Beside(state, scene, world)
-        found = np.array([beside.segment(collisions) for _ in range(segments)])
-        worst = max(worst, np.max(found[:, 0] / (1e-12 + 300.0 * found[:, 1])))
+        comparison = Comparison(state, scene, world)
+        differences = np.array([comparison.segment(collisions) for _ in range(segments)])
+        largest_ratio = max(
+            largest_ratio, np.max(differences[:, 0] / (1e-12 + 300.0 * differences[:, 1]))
+        )
     tried = {"tried": len(scenes) * segments, "unit": f"segments of {collisions} collisions"}
-    margins.at_most("difference from brute force, over what is tolerated", worst, 1.0, **tried)
+    margins.at_most(
+        "difference from brute force, over what is tolerated", largest_ratio, 1.0, **tried
+    )
 
 
-def test_densities(margins):
+@pytest.mark.slow
+def test_gases_of_any_density_run_without_overlap(margins):
     collisions = margins.size(quick=2000, full=500_000)
     disks = [lossless("gas", 160, [math.sqrt(160 * math.pi / share)] * 2) for share in DISKS]
     volume = 4.0 * math.pi / 3.0
@@ -78,14 +81,15 @@ def test_densities(margins):
     refused = sum(not _fits(experiment) for experiment, _, _ in disks + spheres)
     margins.at_most("densities refused", refused, 0, len(disks + spheres), "densities")
     check_run(margins, disks + spheres, collisions)
-    few = margins.size(quick=1, full=5)
-    check_beside(margins, [disks[0], disks[-1], spheres[0], spheres[-1]], few, 10)
+    segments = margins.size(quick=1, full=5)
+    check_against_brute_force(margins, [disks[0], disks[-1], spheres[0], spheres[-1]], segments, 10)
 
 
-FAST = {"shear": {"velocity": 50.0}}  # rows of images slide past each other faster than all else
+FAST_SHEAR = {"shear": {"velocity": 50.0}}  # images slide past each other faster than particles fly
 
 
 def _fits(experiment):
+    """Whether an initial state fits into the box."""
     try:
         check(experiment)
     except InputError:
@@ -95,33 +99,34 @@ def _fits(experiment):
 
 NARROW = {
     "sheared": [
-        (settings("sheared", 30, [60, 4.1], **FAST), 0.9, 0.2),
-        (settings("sheared", 30, [4.1, 60], **FAST), 0.9, 0.2),
+        (settings("sheared", 30, [60, 4.1], **FAST_SHEAR), 0.9, 0.2),
+        (settings("sheared", 30, [4.1, 60], **FAST_SHEAR), 0.9, 0.2),
     ],
     "gas": [
         lossless("gas", 3, [4.01, 4.01]),
         lossless("gas", 8, [5, 9]),
         lossless("gas", 30, [4.1, 60]),
     ],
-    "bed": [lossless("bed", 8, [4.1, "open"], **AT_REST)],
+    "bed": [lossless("bed", 8, [4.1, "open"], **FLOOR_AT_REST)],
     "spheres": [lossless("spheres", 12, [4.2, 4.2, 20])],
 }
 
 
 @pytest.mark.parametrize("kernel", NARROW)
-def test_narrow_boxes(margins, kernel):
+def test_gases_in_narrow_boxes_stay_inside_without_overlap(margins, kernel):
     check_run(margins, NARROW[kernel], margins.size(quick=1000, full=20_000))
-    check_beside(margins, NARROW[kernel], margins.size(quick=2, full=10), 10)
+    check_against_brute_force(margins, NARROW[kernel], margins.size(quick=2, full=10), 10)
 
 
-def test_narrow_channels(margins):
-    scenes = [lossless("walled", 4, [W, "open"], **BETWEEN) for W in (2.05, 3.0, 3.99, 4.2)]
+def test_particles_in_narrow_channels_stay_inside(margins):
+    scenes = [lossless("walled", 4, [W, "open"], **BETWEEN_WALLS) for W in (2.05, 3.0, 3.99, 4.2)]
     check_run(margins, scenes, margins.size(quick=1000, full=20_000))
-    check_run(margins, [lossless("walled", 3, [2.01, "open"], **BETWEEN)], 100)
-    check_beside(margins, scenes[1:], margins.size(quick=2, full=10), 10)
+    check_run(margins, [lossless("walled", 3, [2.01, "open"], **BETWEEN_WALLS)], 100)
+    check_against_brute_force(margins, scenes[1:], margins.size(quick=2, full=10), 10)
 
 
-def test_aspect_ratios(margins):
+@pytest.mark.slow
+def test_gases_in_long_boxes_stay_inside_without_overlap(margins):
     collisions = margins.size(quick=2000, full=200_000)
     scenes = [
         lossless(kernel, 160, box)
@@ -129,31 +134,33 @@ def test_aspect_ratios(margins):
         for box in ([10.0, 1000.0], [1000.0, 10.0])
     ]
     scenes.append(lossless("gas", 600, [720.0, 12.0]))  # too narrow for cells
-    scenes.append(lossless("bed", 160, [1000.0, "open"], **AT_REST))
+    scenes.append(lossless("bed", 160, [1000.0, "open"], **FLOOR_AT_REST))
     check_run(margins, scenes, collisions)
-    check_beside(margins, scenes[:4], margins.size(quick=1, full=5), 10)
+    check_against_brute_force(margins, scenes[:4], margins.size(quick=1, full=5), 10)
 
 
-ALONE = {
+SCENES_OF_FEW = {
     "a gas": settings("gas", 1, [10, 10]) | {"schedule": COOLING},
     "under shear": settings("sheared", 1, [10, 10]) | {"schedule": STEADY},
     "in a bed": settings("bed", 1, [10, "open"]) | {"schedule": STEADY},
 }
 
 
-def test_few_particles(margins):
-    points = nothing = refused = 0
-    for alone in ALONE.values():
+def test_one_to_three_particles_give_numbers_or_are_refused(margins):
+    points = without_numbers = refused = 0
+    for gas in SCENES_OF_FEW.values():
         for number in (1, 2, 3):
             for r, beta in ((0.9, 0.2), (0.5, -0.5), (1.0, 1.0)):
-                chosen = alone | {"particles": number}
+                experiment = gas | {"particles": number}
                 try:
-                    found = run_point(build(chosen, r, beta), chosen, 1).variables
+                    variables = run_point(build(experiment, r, beta), experiment, 1).variables
                 except InputError:
                     assert number == 1
                     refused += 1
                     continue
                 points += 1
-                nothing += not all(np.isfinite(found[x]) for x in ("R", "R_stderr", "E_trans"))
-    margins.at_most("points without a number", nothing, 0, points, "points")
+                without_numbers += not all(
+                    np.isfinite(variables[x]) for x in ("R", "R_stderr", "E_trans")
+                )
+    margins.at_most("points without a number", without_numbers, 0, points, "points")
     margins.at_most("points refused: those of one undriven particle", refused, 6, points, "points")

@@ -1,8 +1,8 @@
 """Falls onto floors of any wave form, in many digits.
 
-A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_sine takes it. Between
-the times at which the gap to the floor has a stationary point or a kink it is monotone: what it
-does follows from its values there, and its first root from bisection.
+A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_sine takes it. The gap
+to the floor is monotone between its stationary points and kinks: values at these bracket its first
+root, which follows by bisection.
 """
 
 import itertools
@@ -24,38 +24,44 @@ class Fall:
         self.A, self.P, self.g, self.y, self.v, self.phase = map(mpmath.mpf, map(float, numbers))
 
     def height(self, t):
+        """Height of the lowest point of the particle at t."""
         return self.y + self.v * t - self.g * t**2 / 2
 
     def gap(self, t):
+        """Height of the particle above the floor at t."""
         return self.height(t) - self.surface(t)[0]
 
     def speed(self, t):
-        """That at which the gap opens."""
+        """Rate of change of the gap."""
         return self.v - self.g * t - self.surface(t)[1]
 
     def lengths(self, t):
-        """The sum of the lengths that enter the gap: what roundings are relative to."""
+        """Sum of the lengths that enter the gap, the scale of its roundings."""
         return self.y + self.A + (abs(self.v) + self.g * t + self.fastest) * (abs(self.phase) + t)
 
     def depth(self, t):
-        """How far below the floor the particle has been by t, if more than at first; of one that
-        sinks, so far that it shows."""
-        first = min(self.gap(0), mpmath.mpf(0))
-        least = min(self.gap(t), first)
+        """Greatest depth of the particle below the floor up to t, beyond its initial depth.
+
+        Of a particle that sinks on, a depth of more than a hundredth of the amplitude.
+        """
+        initial = min(self.gap(0), mpmath.mpf(0))
+        lowest = min(self.gap(t), initial)
         for x in self.stations(t):
-            least = min(least, self.gap(x))
-            if least < first - self.A / 100:
+            lowest = min(lowest, self.gap(x))
+            if lowest < initial - self.A / 100:
                 break
-        return first - least
+        return initial - lowest
 
     def first(self):
-        """When the particle meets the floor; one that is on it, or below by rounding, and leaves
-        it does so later."""
+        """Time of the first contact with the floor.
+
+        A particle that starts on the floor, or below it by rounding, and leaves it meets it later.
+        """
         level = min(self.gap(0), mpmath.mpf(0))
         if self.gap(0) <= level and self.speed(0) < 0:
             return mpmath.mpf(0)
         drop = self.v**2 + 2 * self.g * (self.y + abs(self.y) / 10**6 + mpmath.mpf(10) ** -9)
-        end = (self.v + mpmath.sqrt(drop)) / self.g  # it would be below where the floor ever is
+        end = (self.v + mpmath.sqrt(drop)) / self.g  # below the lowest point of the floor by then
         above = mpmath.mpf(0)
         for x in [*self.stations(end), end]:
             if self.gap(x) < level:
@@ -64,8 +70,10 @@ class Fall:
         raise AssertionError("never below the floor")
 
     def stations(self, end):
-        """In order, the times up to `end` between which the gap is monotone, wherever the particle
-        is not above all strokes."""
+        """The times up to `end` between which the gap is monotone, in order.
+
+        Times when the particle is above all strokes are left out.
+        """
         yield mpmath.mpf(0)
         for begin, stop in self._windows(end):
             period = int(mpmath.floor((self.phase + begin) / self.P))
@@ -80,7 +88,7 @@ class Fall:
                 period += 1
 
     def _windows(self, end):
-        """When the particle is not above all strokes."""
+        """Intervals of time when the particle is not above all strokes."""
         square = self.v**2 + 2 * self.g * (self.y - self.A)
         if square <= 0:
             return [(mpmath.mpf(0), end)]
@@ -89,8 +97,8 @@ class Fall:
         return [(a, b) for a, b in windows if a < b]
 
     def _stationary(self, a, b):
-        """Where the gap, whose speed is monotone there, is stationary between a and b."""
-        inside = (b - a) * mpmath.mpf(10) ** -30  # a kink has two speeds
+        """The time between a and b when the gap is stationary, if any; its speed is monotone."""
+        inside = (b - a) * mpmath.mpf(10) ** -30  # the speed is discontinuous at kinks
         if self.speed(a + inside) * self.speed(b - inside) < 0:
             yield self._bisect(self.speed, a + inside, b - inside)
 
@@ -104,11 +112,13 @@ class Fall:
 
 
 def rise_of(floor):
-    """Share of a period in which a floor goes up at constant speed; 1 is a sawtooth."""
+    """Share of a period during which a floor rises at constant speed; 1 for a sawtooth."""
     return (*floor.shares, 1.0)[1]
 
 
 class SineFall(Fall):
+    """A fall onto a sine."""
+
     @property
     def fastest(self):
         return self.A * mpmath.pi / self.P
@@ -118,7 +128,7 @@ class SineFall(Fall):
         return self.A * (1 - mpmath.cos(angle)) / 2, self.fastest * mpmath.sin(angle)
 
     def edges(self):
-        """Shares of a period between which the floor's acceleration + g keeps its sign."""
+        """Shares of a period between which the acceleration of the floor plus g keeps its sign."""
         sharpest = self.A / 2 * (2 * mpmath.pi / self.P) ** 2
         if sharpest <= self.g:
             return [0, 1]
@@ -127,6 +137,8 @@ class SineFall(Fall):
 
 
 class TriangularFall(Fall):
+    """A fall onto a floor that rises and falls at constant speeds."""
+
     @property
     def fastest(self):
         rise = rise_of(self.floor)
@@ -145,12 +157,12 @@ class TriangularFall(Fall):
 
 
 def exact(floor, *fall):
-    """The same fall in many digits."""
+    """The Fall in many digits."""
     return (SineFall if isinstance(floor, Sine) else TriangularFall)(floor, *fall)
 
 
 def level(floor, phase):
-    """Height of the surface, in double precision."""
+    """Height of the surface of a floor at a phase, in double precision."""
     share = phase / floor.period % 1.0
     if isinstance(floor, Sine):
         return floor.amplitude * math.sin(math.pi * share) ** 2

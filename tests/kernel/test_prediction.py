@@ -1,17 +1,18 @@
-"""When two particles meet, that nobody's meeting is overlooked, and the queue of meetings."""
+"""Prediction of contacts: none is missed, and the queue of events returns the earliest."""
 
 import numpy as np
 import pytest
 from brute_force import BruteForce, begin, run, scene_of, settings, snapshot
 from compiled import from_python
+from slow_cases import slow_but
 
-from roughgas.kernel import event_lists, memory
-from roughgas.kernel.memory import new_state
+from roughgas.kernel import event_lists, layout
+from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, NOW, TYPICAL_SPEED
 
 
 def first_contact(scene, world, position, velocity, spin=None):
-    """((pair, time) of the kernel's first contact, the same of the brute force)."""
+    """((pair, time) of the kernel's first contact, (pair, time) of the brute force's)."""
     spin = np.zeros((len(position), 2 * position.shape[1] - 3)) if spin is None else spin
     state = new_state(scene, position, velocity, spin)
     row = run(state, scene, 1, collisions=1)
@@ -21,21 +22,21 @@ def first_contact(scene, world, position, velocity, spin=None):
 
 
 @pytest.mark.parametrize("number", [2, 3, 15, 16, 17, 31, 33, 48])
-def test_any_number_of_particles(number):
+def test_the_first_contact_is_found_for_any_number_of_particles(number):
     """The sweep works on whole vector registers, whose padding is never taken for particles."""
     experiment = settings("gas", number, [30, 40])
     scene, world = scene_of(experiment, 1.0, 0.5)
     _, state = begin(experiment, 1.0, 0.5, number)
-    state.trajectory[:, 2:4] *= 50.0  # too fast to meet only one image within the horizon
+    state.trajectory[:, 2:4] *= 50.0  # so fast that several images are within the horizon
     state.trajectory[0, 2:4] *= 40.0
     shot = snapshot(state, scene)
-    found, expected = first_contact(scene, world, shot.position, shot.velocity, shot.spin)
-    assert found[0] == expected[0]
-    assert found[1] == pytest.approx(expected[1], rel=1e-9)
+    contact, expected = first_contact(scene, world, shot.position, shot.velocity, shot.spin)
+    assert contact[0] == expected[0]
+    assert contact[1] == pytest.approx(expected[1], rel=1e-9)
 
 
 def tall_bed(rng):
-    """A bed whose particles are hundreds of radii up and fast."""
+    """Positions and velocities of fast particles hundreds of radii above a floor."""
     number, columns = 40, 12
     sites = rng.permutation(columns * 200)[:number]
     position = np.stack([4.0 * (sites % columns) + 2.0, 300.0 + 4.0 * (sites // columns)], axis=1)
@@ -43,7 +44,7 @@ def tall_bed(rng):
 
 
 def jittered(rng, counts, spacing, slack):
-    """Particles on a lattice, each off its site by up to `slack` along each axis."""
+    """Positions near sites of a lattice, off by up to `slack` along each axis, and velocities."""
     axes = [spacing * (np.arange(c) + 0.5) for c in counts]
     position = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(counts))
     position += rng.uniform(-slack, slack, position.shape)
@@ -53,8 +54,8 @@ def jittered(rng, counts, spacing, slack):
 @pytest.mark.parametrize(
     "kind", ["tall bed", "dense", "dilute", "cold and hot", "shear", "spheres"]
 )
-def test_the_first_contact_of_random_states(kind):
-    """40 states each: whatever the sieve rounds, it lets the first pair to meet through."""
+def test_the_first_contact_is_found_in_random_states(kind):
+    """40 states each: roundings of the sieve do not remove the first pair to meet."""
     rng = np.random.default_rng(len(kind))
     for _ in range(40):
         if kind == "tall bed":
@@ -75,15 +76,15 @@ def test_the_first_contact_of_random_states(kind):
             if kind == "cold and hot":
                 velocity *= 10.0 ** rng.uniform(-4, 2, (36, 1))
         scene, world = scene_of(experiment, 0.9, 0.1)
-        found, expected = first_contact(scene, world, position, velocity)
-        assert found[0] == expected[0]
-        assert found[1] == pytest.approx(expected[1], rel=1e-9, abs=1e-12)
+        contact, expected = first_contact(scene, world, position, velocity)
+        assert contact[0] == expected[0]
+        assert contact[1] == pytest.approx(expected[1], rel=1e-9, abs=1e-12)
 
 
 def test_a_seventh_contact_is_not_lost_when_the_first_six_fall_through():
-    """A needle is set off along a lane; six particles leave it before they are met, one stays.
+    """A particle flies along a lane that six others leave before it comes, and one does not.
 
-    A particle keeps a short list of contacts: what does not fit in must be looked for again.
+    A particle keeps a short list of contacts: others must be predicted again later.
     """
     lane = 3.0 * np.arange(6) + 20.0
     position = [(x, 100.0) for x in lane] + [(x, 102.5) for x in lane]
@@ -110,7 +111,7 @@ POINTS = {
 
 @pytest.mark.parametrize("name", POINTS)
 def test_when_and_how_often_samples_are_taken_does_not_matter(name):
-    """Bitwise: one sample, many, at odd instants, or in several calls."""
+    """Bitwise, for a single sample, many samples, and samples in several calls."""
     instants = {}
     for interval, samples, calls in ((32.0, 1, 1), (0.25, 128, 1), (0.125, 64, 4), (1.0, 1, 32)):
         scene, state = begin(*POINTS[name], 5)
@@ -122,7 +123,7 @@ def test_when_and_how_often_samples_are_taken_does_not_matter(name):
 
 @pytest.mark.parametrize("name", POINTS)
 def test_how_far_ahead_contacts_are_foreseen_does_not_matter(name):
-    """Four collisions per particle: later, chaos shows the few roundings that it does make."""
+    """Four collisions per particle; later, chaos amplifies the few roundings that differ."""
     ends = []
     for horizon in (np.inf, 1.0, 0.1):
         scene, state = begin(*POINTS[name], 6)
@@ -131,10 +132,10 @@ def test_how_far_ahead_contacts_are_foreseen_does_not_matter(name):
         # the longest horizon acts from each particle's next event on
         run(state, scene, 1, collisions=2 * len(state.changes))
         ends.append(snapshot(state, scene))
-    for other in ends[1:]:
-        assert other.time == pytest.approx(ends[0].time, rel=1e-9)
-        assert other.velocity == pytest.approx(ends[0].velocity, abs=1e-7)
-        assert other.spin == pytest.approx(ends[0].spin, abs=1e-7)
+    for end in ends[1:]:
+        assert end.time == pytest.approx(ends[0].time, rel=1e-9)
+        assert end.velocity == pytest.approx(ends[0].velocity, abs=1e-7)
+        assert end.spin == pytest.approx(ends[0].spin, abs=1e-7)
 
 
 earliest, enter_in_queue, clear_calendar = map(
@@ -142,16 +143,16 @@ earliest, enter_in_queue, clear_calendar = map(
 )
 
 
-@pytest.mark.parametrize("few", [0, 10_000])
-@pytest.mark.parametrize("spread", [1e-3, 1.0, 1e6])
-def test_the_earliest_event(few, spread, monkeypatch):
-    """Times within a day, over a year and over many of them; some at the same instant, some
-    never."""
-    monkeypatch.setattr(memory, "FEW", few)
+@pytest.mark.parametrize("largest_swept", [0, 10_000])
+@pytest.mark.parametrize("spread", slow_but([1.0], [1e-3, 1.0, 1e6]))
+def test_the_queue_returns_the_earliest_event(largest_swept, spread, monkeypatch):
+    """Times within a day of the calendar, over a year and over many years; some coincide, some are
+    infinite."""
+    monkeypatch.setattr(layout, "SWEEP_LIMIT", largest_swept)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     rng = np.random.default_rng(0)
     state.clock[TYPICAL_SPEED] = 1.0
-    if few == 0:
+    if largest_swept == 0:
         clear_calendar(state)
     expected = np.full(300, np.inf)
     for step in range(2000):
@@ -167,8 +168,8 @@ def test_the_earliest_event(few, spread, monkeypatch):
             assert state.agenda.key[earliest(state)] == expected.min()
 
 
-@pytest.mark.parametrize("few", [0, 10_000])
-def test_nothing_is_ever_going_to_happen(few, monkeypatch):
-    monkeypatch.setattr(memory, "FEW", few)
+@pytest.mark.parametrize("largest_swept", [0, 10_000])
+def test_a_queue_without_events_returns_infinity(largest_swept, monkeypatch):
+    monkeypatch.setattr(layout, "SWEEP_LIMIT", largest_swept)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     assert state.agenda.key[earliest(state)] == np.inf

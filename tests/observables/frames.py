@@ -6,8 +6,8 @@ from roughgas.observables import Frame, System
 
 
 def system_of(box, **changes):
-    """A system in a periodic box of disks or spheres."""
-    found = System(
+    """Return a system of 30 disks or spheres in a periodic box, with `changes`."""
+    system = System(
         particles=30,
         box=tuple(map(float, box)),
         periodic=(True,) * len(box),
@@ -16,11 +16,11 @@ def system_of(box, **changes):
         interval=1.0,
         cooling=False,
     )
-    return found._replace(**changes)
+    return system._replace(**changes)
 
 
 def frame_of(system, position=None, velocity=None, spin=None, **changes):
-    """A frame; what is not given is random."""
+    """Return a frame of `system`; without arguments, positions, velocities and spins are random."""
     rng = np.random.default_rng(7)
     shape = system.particles, system.dimension
     position = rng.uniform(0, 1, shape) * system.box if position is None else position

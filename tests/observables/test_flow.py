@@ -7,7 +7,12 @@ import pytest
 from tests.observables.frames import frame_of, system_of
 
 import roughgas
-from roughgas.observables.flow import Motion, cells_of, local_energies, over_flow
+from roughgas.observables.flow import (
+    ParticleMotion,
+    cell_counts,
+    flow_corrected_energies,
+    local_energies,
+)
 from roughgas.simulation.point import flow_verdict
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 
@@ -16,7 +21,7 @@ SPIN = {"spin": {"inertia": 0.5}}
 
 
 def frames(system, number, flow=None, seed=1):
-    """Frames of a gas in equilibrium at E_trans = 1/2, with a flow of positions on top."""
+    """Yield frames of a gas in equilibrium at E_trans = 1/2, plus `flow(positions)` along x."""
     rng, N, D = np.random.default_rng(seed), system.particles, system.dimension
     for _ in range(number):
         position = rng.uniform(0.0, 1.0, (N, D)) * system.box
@@ -27,40 +32,40 @@ def frames(system, number, flow=None, seed=1):
 
 
 def motion_of(frame):
-    return Motion(
+    return ParticleMotion(
         *(frame.position, frame.velocity, frame.spin, frame.mass, frame.inertia, frame.radius)
     )
 
 
-def looks(system, number, flow=None, particles=40):
-    """The energies of a gas over its local flow, (frames,) each."""
+def flow_energies(system, number, flow=None, particles=40):
+    """Return the energies of a gas relative to its local flow, (frames,) each."""
     motions = [motion_of(frame) for frame in frames(system, number, flow)]
-    return over_flow(motions, system, cells_of(system, particles))
+    return flow_corrected_energies(motions, system, cell_counts(system, particles))
 
 
 @pytest.mark.parametrize("particles", [3, 10, 40])
 @pytest.mark.parametrize("box", [BOX, (14, 14, 20)])
 def test_a_gas_in_equilibrium_has_the_same_energy_in_cells_of_any_size(box, particles):
     """400 frames of 160 particles: within 4 standard errors, by chance once in 8000 cases."""
-    seen = looks(system_of(box, particles=160), 400, particles=particles)
+    energies = flow_energies(system_of(box, particles=160), 400, particles=particles)
     for name, expected in (("E_trans", 0.5), ("shift", 0.0)):
-        values = getattr(seen, name)
+        values = getattr(energies, name)
         assert abs(values.mean() - expected) < 4.0 * values.std() / math.sqrt(len(values))
 
 
-def test_a_flow_of_its_own_is_no_temperature():
+def test_a_macroscopic_flow_is_no_temperature():
     """A wave with the energy of a tenth of the gas: E_trans has it, and E_trans_local nearly not.
 
-    Within a cell of 12 a the velocity of a wave of 60 a still varies: a tenth of its energy is
-    left. The shift is that of R = 1/3 at equal temperatures of an energy lower by 8 %.
+    Within a cell of 12 a the velocity of a wave of 60 a still varies: a tenth of its energy
+    remains. The shift is the change of R = 1/3, at equal temperatures, by an energy lower by 8 %.
     """
     system = system_of(BOX, particles=1600)
     wave = math.sqrt(2.0 * 0.2)
-    seen = looks(system, 20, lambda x: wave * np.sin(2.0 * np.pi * x[:, 1] / BOX[1]))
-    assert seen.E_trans.mean() == pytest.approx(0.5, rel=0.02)
+    energies = flow_energies(system, 20, lambda x: wave * np.sin(2.0 * np.pi * x[:, 1] / BOX[1]))
+    assert energies.E_trans.mean() == pytest.approx(0.5, rel=0.02)
     rotation = 0.25  # q/2
     expected = rotation / (rotation + 0.5) - rotation / (rotation + 0.55)
-    assert seen.shift.mean() == pytest.approx(expected, rel=0.15)
+    assert energies.shift.mean() == pytest.approx(expected, rel=0.15)
 
 
 def test_cells_are_those_of_a_loop_over_particles():
@@ -79,8 +84,8 @@ def test_cells_are_those_of_a_loop_over_particles():
         energy += sum(0.5 * mass[k] * sum((frame.velocity[k] - flow) ** 2) for k in members)
         freedom += 2 * (len(members) - 1)
     (local,), (overall,) = local_energies(mass[None], frame.velocity[None], numbers[None], 6)
-    seen = over_flow([motion_of(frame)], system, (2, 3))
-    assert seen.E_trans == pytest.approx([local])
+    energies = flow_corrected_energies([motion_of(frame)], system, (2, 3))
+    assert energies.E_trans == pytest.approx([local])
     assert local == pytest.approx(energy / freedom)
     mean = mass @ frame.velocity / mass.sum()
     energy = 0.5 * mass @ ((frame.velocity - mean) ** 2).sum(axis=1)
@@ -99,7 +104,7 @@ def test_cells_are_those_of_a_loop_over_particles():
     ],
 )
 def test_cells_have_forty_particles_and_layers_between_walls_ten(system, cells):
-    assert cells_of(system, 40) == cells
+    assert cell_counts(system, 40) == cells
 
 
 # ------------------------------------------------------------------------ verdicts
@@ -112,21 +117,22 @@ POINT = {"R": 0.2, "R_ci95": 0.01, "R_ci95_trusted": YES, "E_trans_trusted": YES
     [(0.011, 0.001, True), (0.009, 0.001, False), (0.011, 0.006, False), (-0.02, 0.001, False)],
 )
 def test_a_shift_beyond_the_interval_of_R_takes_its_verdicts_back(shift, stderr, flows):
-    """A significant one; beyond what R can bear at the error that it states."""
+    """If the shift is significant, and larger than the stated error of R."""
     point = POINT | flow_verdict(POINT, Estimate(shift, stderr))
     expected = UNKNOWN if flows else YES
     assert point["R_flow_shift"] == shift
     assert [point[name] for name in list(POINT)[2:]] == [expected] * 3
 
 
-def test_what_was_not_trusted_before_stays_as_it_was():
+def test_untrusted_numbers_stay_untrusted():
     point = POINT | {"R_ci95_trusted": NO, "E_trans_trusted": NO, "target_met": NO}
     point = point | flow_verdict(point, Estimate(0.05, 0.001))
     assert [point[name] for name in list(POINT)[2:]] == [NO] * 3
 
 
+@pytest.mark.slow
 def test_a_large_sheared_gas_has_a_flow_that_R_counts_as_temperature():
-    """R over the local flow lies by two of its intervals above R, which is not known."""
+    """R relative to the local flow is two of its intervals above R, whose verdict is unknown."""
     point = roughgas.simulate(
         r=0.8,
         beta=0.0,
@@ -144,19 +150,20 @@ def test_a_large_sheared_gas_has_a_flow_that_R_counts_as_temperature():
     assert over_flow == pytest.approx(float(point.R_flow_shift), abs=0.004)
 
 
-def test_the_papers_sheared_gas_has_no_flow_of_its_own():
-    given = {"kind": "steady", "equilibrate": 500, "measure": 3000, "sample_every": 1}
-    point = roughgas.simulate("sheared", r=0.8, beta=0.0, schedule=given, progress=False)
+def test_the_papers_sheared_gas_has_no_secondary_flow():
+    schedule = {"kind": "steady", "equilibrate": 500, "measure": 3000, "sample_every": 1}
+    point = roughgas.simulate("sheared", r=0.8, beta=0.0, schedule=schedule, progress=False)
     assert int(point.R_ci95_trusted) == YES
     assert 0.0 < abs(float(point.R_flow_shift)) < float(point.R_ci95)
 
 
-def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
+@pytest.mark.slow
+def test_the_flow_between_sliding_walls_is_measured_by_default():
     """Its line is fitted to the flow, which slips at the walls and bends."""
     sides = {"bottom_wall": {"velocity": -2.0, "roughness": 0.5}}
     sides |= {"lid": {"velocity": 2.0, "roughness": 0.5}}
-    given = {"kind": "steady", "equilibrate": 200, "measure": 600, "sample_every": 1}
-    gas = dict(particles=100, box=[40, 40], effects=SPIN | sides, schedule=given, progress=False)
+    schedule = {"kind": "steady", "equilibrate": 200, "measure": 600, "sample_every": 1}
+    gas = dict(particles=100, box=[40, 40], effects=SPIN | sides, schedule=schedule, progress=False)
     point = roughgas.simulate(r=0.8, beta=0.0, **gas)
     assert math.isfinite(float(point.R_flow_shift)) and float(point.R_flow_shift) != 0.0
     heated = {"thermostat": {"power": 0.1, "interval": 0.5, "spin_share": 0}}
@@ -164,8 +171,8 @@ def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
     assert "R_flow_shift" not in at_rest
 
 
-def test_few_particles_have_no_flow_to_look_at():
-    given = {"kind": "steady", "equilibrate": 500, "measure": 1000, "sample_every": 1}
-    sheared = dict(r=0.8, beta=0.0, schedule=given, progress=False)
+def test_few_particles_have_no_measured_flow():
+    schedule = {"kind": "steady", "equilibrate": 500, "measure": 1000, "sample_every": 1}
+    sheared = dict(r=0.8, beta=0.0, schedule=schedule, progress=False)
     point = roughgas.simulate("sheared", particles=40, box=[25, 25], **sheared)
     assert "R_flow_shift" not in point

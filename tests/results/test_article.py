@@ -1,4 +1,4 @@
-"""The article: what it quotes is known, and what it says of itself agrees with CITATION.cff."""
+"""The article: its quoted numbers exist, and its metadata agree with CITATION.cff."""
 
 import csv
 import json
@@ -10,15 +10,16 @@ import matplotlib.pyplot as plt
 import pytest
 from project import Project
 
-from roughgas.config.reading import read_yaml
-from roughgas.results.article import COLUMNS, QUOTED
-from roughgas.results.products import called
+from roughgas.base.reading import read_yaml
+from roughgas.results.article import COLUMNS, QUOTED_NUMBER
+from roughgas.results.crate import full_name
 from roughgas.steps import main
 
 ROOT = Path(__file__).parents[2]
 ARTICLE = ROOT / "article"
 NUMBERS = ROOT / "figures/numbers.json"
-FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
+FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b", "transport_inertia")
+LONG_TABLE = ROOT / "studies/transport/long.csv"
 CLAIM = {"quote": "R > 1/2 at <v> [ours]", "ours": False, "verdict": "holds"}
 HEAD = ["experiment", "r", "beta", "R", "R_stderr"]
 HEAD += ["R_collisional", "R_collisional_stderr", "R_corrected", "R_theory"]
@@ -26,12 +27,12 @@ HEAD += ["R_collisional", "R_collisional_stderr", "R_corrected", "R_theory"]
 
 def rows(r=(0.8, 0.9, 0.99)):
     for name in COLUMNS:
-        for one in r:
+        for restitution in r:
             for beta in (-0.8, 0.0, 0.5):
                 cooling = name == "cooling"
-                collisional = ["", ""] if cooling else [one + 0.01, 0.001]
-                corrected = [one - 0.001] if cooling else [""]
-                yield [name, one, beta, one, 0.002, *collisional, *corrected, 0.25]
+                collisional = ["", ""] if cooling else [restitution + 0.01, 0.001]
+                corrected = [restitution - 0.001] if cooling else [""]
+                yield [name, restitution, beta, restitution, 0.002, *collisional, *corrected, 0.25]
 
 
 @pytest.fixture
@@ -47,16 +48,16 @@ def compiled(tmp_path):
     plt.close("all")
 
     def compile_in(folder):
-        files = [str(path) for path in sorted(folder.iterdir())]
-        results = [f"--{name}={tmp_path / file}" for name, file in MADE.items()]
+        files = [str(path) for path in [*sorted(folder.iterdir()), LONG_TABLE]]
+        results = [f"--{name}={tmp_path / file}" for name, file in RESULT_FILES.items()]
         output = tmp_path / "article.pdf"
-        told = [f"--numbers={NUMBERS}", *results, "--figures", *figures, "-o", str(output)]
-        return main(["article", *files, *told]), output
+        options = [f"--numbers={NUMBERS}", *results, "--figures", *figures, "-o", str(output)]
+        return main(["article", *files, *options]), output
 
     return compile_in
 
 
-MADE = {"claims": "claims.json", "table": "R.csv"}
+RESULT_FILES = {"claims": "claims.json", "table": "R.csv"}
 
 
 def test_the_article_compiles_with_made_up_results_to_the_same_bits(compiled):
@@ -69,19 +70,21 @@ def test_the_article_compiles_with_made_up_results_to_the_same_bits(compiled):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ('#n("bed.tim")', "number in article.typ = bed.tim: must be one that numbers.json holds"),
         ("#nothing", "article.typ = unknown variable: nothing: must be what Typst compiles"),
     ],
 )
-def test_what_cannot_be_filled_is_refused_in_one_line(compiled, tmp_path, capsys, text, said):
+def test_unknown_numbers_and_errors_are_refused_in_one_line(
+    compiled, tmp_path, capsys, text, message
+):
     folder = tmp_path / "mine"
     folder.mkdir()
     (folder / "article.typ").write_text(text)
     status, output = compiled(folder)
     assert status == 2 and not output.exists()
-    assert capsys.readouterr().err == f"roughgas: error: {said}\n"
+    assert capsys.readouterr().err == f"roughgas: error: {message}\n"
 
 
 @pytest.mark.slow
@@ -91,7 +94,7 @@ def test_a_run_writes_the_article_and_a_deposit(tmp_path):
     (tmp_path / "docs").mkdir()
     shutil.copy(ROOT / "docs/results.md", tmp_path / "docs")
 
-    def change(config):  # to what numbers are quoted of
+    def change(config):  # to the points of the quoted numbers
         tiny = config["scales"]["tiny"]
         tiny["drives.heated"]["sweep"]["thermostat.spin_share"] = ["0"]
         tiny["vibrated_rough_walls"]["sweep"] = {"beta": ["0"]}
@@ -105,14 +108,16 @@ def test_a_run_writes_the_article_and_a_deposit(tmp_path):
 
 
 def test_it_quotes_numbers_that_are_known():
-    quoted = set(QUOTED.findall((ARTICLE / "article.typ").read_text("utf-8")))
+    quoted = set(QUOTED_NUMBER.findall((ARTICLE / "article.typ").read_text("utf-8")))
     assert len(quoted) > 15 and quoted <= json.loads(NUMBERS.read_text()).keys()
 
 
-def test_its_facts_are_those_of_the_citation():
-    about, cited = read_yaml(ARTICLE / "metadata.yaml"), read_yaml(ROOT / "CITATION.cff")
+def test_its_metadata_agree_with_the_citation():
+    metadata, cited = read_yaml(ARTICLE / "metadata.yaml"), read_yaml(ROOT / "CITATION.cff")
     (paper,) = cited["references"]
-    assert about["title"] == f"[Re] {paper['title']}"
-    assert [one["name"] for one in about["authors"]] == list(map(called, cited["authors"]))
-    assert {"doi": paper["doi"]} in about["replication"]
-    assert about["abstract"].startswith("McNamara and Luding (1998)")
+    assert metadata["title"] == f"[Re] {paper['title']}"
+    assert [author["name"] for author in metadata["authors"]] == list(
+        map(full_name, cited["authors"])
+    )
+    assert {"doi": paper["doi"]} in metadata["replication"]
+    assert metadata["abstract"].startswith("McNamara and Luding (1998)")

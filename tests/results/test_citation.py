@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from project import Project, jobs_by_rule
 
-from roughgas.config.reading import read_yaml
-from roughgas.results.products import called, codemeta, write_codemeta
+from roughgas.base.reading import read_yaml
+from roughgas.results.crate import codemeta, full_name, write_codemeta
 from roughgas.steps import main
 
 ROOT = Path(__file__).parents[2]
@@ -16,42 +16,42 @@ CITED = read_yaml(ROOT / "CITATION.cff")
 CHECKED = read_yaml(ROOT / "codecheck.yml")
 
 
-def test_the_committed_codemeta_is_what_the_step_writes(tmp_path):
+def test_the_committed_codemeta_is_up_to_date(tmp_path):
     assert main(["codemeta", str(ROOT / "CITATION.cff"), "-o", str(tmp_path / "c.json")]) == 0
     written = (tmp_path / "c.json").read_text("utf-8")
-    said = "snakemake -j1 --force codemeta.json"
-    assert written == (ROOT / "codemeta.json").read_text("utf-8"), said
-    found = json.loads(written)
-    assert (found["version"], found["description"]) == (CITED["version"], CITED["title"])
-    assert found["referencePublication"][0]["@id"].endswith(CITED["references"][0]["doi"])
+    command = "snakemake -j1 --force codemeta.json"
+    assert written == (ROOT / "codemeta.json").read_text("utf-8"), command
+    metadata = json.loads(written)
+    assert (metadata["version"], metadata["description"]) == (CITED["version"], CITED["title"])
+    assert metadata["referencePublication"][0]["@id"].endswith(CITED["references"][0]["doi"])
 
 
-def test_what_a_citation_has_at_release_is_told_and_what_it_lacks_is_not(tmp_path):
+def test_codemeta_has_the_fields_of_a_release_if_the_citation_has_them(tmp_path):
     author = {"given-names": "A", "family-names": "B", "orcid": "https://orcid.org/0"}
-    more = {"doi": "10.1/x", "date-released": "2026-12-01", "repository-code": "https://c"}
-    found = codemeta(CITED | more | {"authors": [author]})
-    assert found["author"] == [
+    release = {"doi": "10.1/x", "date-released": "2026-12-01", "repository-code": "https://c"}
+    metadata = codemeta(CITED | release | {"authors": [author]})
+    assert metadata["author"] == [
         {"@type": "Person", "givenName": "A", "familyName": "B", "@id": "https://orcid.org/0"}
     ]
-    assert (found["identifier"], found["codeRepository"]) == ("10.1/x", "https://c")
+    assert (metadata["identifier"], metadata["codeRepository"]) == ("10.1/x", "https://c")
     assert not {"identifier", "codeRepository", "datePublished"} & codemeta(CITED).keys()
     (tmp_path / "bad.cff").write_text("a: [")
     assert main(["codemeta", str(tmp_path / "bad.cff"), "-o", str(tmp_path / "c.json")]) == 2
     write_codemeta(ROOT / "CITATION.cff", output=tmp_path / "c.json")
 
 
-def test_the_check_has_the_authors_and_title_of_what_is_cited():
-    assert [one["name"] for one in CHECKED["paper"]["authors"]] == list(
-        map(called, CITED["authors"])
+def test_codecheck_has_the_authors_and_title_of_the_citation():
+    assert [author["name"] for author in CHECKED["paper"]["authors"]] == list(
+        map(full_name, CITED["authors"])
     )
     assert CHECKED["paper"]["title"] == f"[Re] {CITED['references'][0]['title']}"
 
 
 @pytest.mark.slow  # runs Snakemake
 def test_every_file_of_the_manifest_is_made_by_a_rule(tmp_path):
-    project, files = Project(tmp_path), [one["file"] for one in CHECKED["manifest"]]
+    project, files = Project(tmp_path), [entry["file"] for entry in CHECKED["manifest"]]
     (tmp_path / "docs").mkdir()
     shutil.copy(ROOT / "docs/results.md", tmp_path / "docs")
     planned = jobs_by_rule(project.succeed("-n", "--", *files))
-    made = {name: planned[name] for name in ("figure", "table", "claims", "quoted_numbers")}
-    assert made == {"figure": 4, "table": 1, "claims": 1, "quoted_numbers": 1}
+    jobs = {name: planned[name] for name in ("figure", "table", "claims", "quoted_numbers")}
+    assert jobs == {"figure": 4, "table": 1, "claims": 1, "quoted_numbers": 1}

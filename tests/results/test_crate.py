@@ -1,4 +1,4 @@
-"""A run as an RO-Crate. That of a real run is in tests/workflow."""
+"""A run as an RO-Crate. The crate of a real run is in tests/workflow."""
 
 import hashlib
 import json
@@ -10,7 +10,7 @@ import pytest
 from rocrate.rocrate import ROCrate
 
 from roughgas.cli import main
-from roughgas.results.products import project_files
+from roughgas.results.crate import project_files
 
 ROOT = Path(__file__).parents[2]
 PRODUCTS = ["results/tiny/cooling.nc", "results/tiny/R.csv", "figures/tiny/fig1a.png"]
@@ -46,7 +46,7 @@ def test_a_crate_holds_project_products_and_configuration(project):
     assert {file.id.replace("%2B", "+") for file in crate.get_by_type("File")} == packed
     assert crate.mainEntity.id == "Snakefile"
     assert crate.root_dataset["license"].endswith("/MIT")
-    assert [one.id for one in crate.dereference("#run")["result"]] == PRODUCTS
+    assert [product.id for product in crate.dereference("#run")["result"]] == PRODUCTS
     assert json.loads(Path("run/configuration.json").read_text())["scale"] == "paper"
 
 
@@ -58,7 +58,7 @@ def test_a_crate_holds_project_products_and_configuration(project):
         ([PRODUCTS[1], "-o", "new"], "--output = new: must end in .zip"),
     ],
 )
-def test_what_cannot_be_packed_is_refused_in_one_line(project, capsys, arguments, message):
+def test_illegal_products_and_names_are_refused_in_one_line(project, capsys, arguments, message):
     before = sorted(Path().rglob("*"))
     assert main(["crate", *arguments]) in (1, 2)
     (line,) = capsys.readouterr().err.splitlines()

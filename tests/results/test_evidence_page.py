@@ -1,93 +1,55 @@
 """The sentences on evidence in the documentation, against the rows that are published with it."""
 
-import math
+import csv
+from collections import Counter
 from pathlib import Path
 
-import numpy as np
-import pytest
 from tests.pages import DOCS
 
-from roughgas.base.files import module_of
-from roughgas.results.evidence import AGREES, NOT_KNOWN, read_rows
-from roughgas.statistics.errors import SIGNIFICANT, student_t
+from roughgas.base.files import study_module
+from roughgas.results.comparison import read_rows
+from roughgas.results.row_verdicts import verdicts
 
 ROOT = DOCS.parent
 ROWS = read_rows(ROOT / "figures" / "evidence.csv")
+JUDGED = list(zip(ROWS, verdicts([row for _, row in ROWS]), strict=True))
 
 
 def words(path):
     return " ".join(Path(ROOT, path).read_text(encoding="utf-8").split())
 
 
-def raw(row):
-    """The difference in combined standard errors; NaN without errors."""
-    return abs(row.gap.value / row.gap.stderr) if row.gap.stderr > 0.0 else math.nan
+def test_published_reasons_match_the_code():
+    """The rows of mpemba name the errors that they share."""
+    notes = study_module(ROOT / "studies" / "mpemba", "evidence")
+    reasons = {notes.REASON_CROSSING, notes.REASON_CURVE, ""}
+    assert {row.reason for study, row in ROWS if study == "mpemba"} == reasons
 
 
-@pytest.fixture(scope="module")
-def page():
-    return words("docs/evidence.md")
+def test_the_published_table_has_the_verdicts_of_its_rows():
+    with open(ROOT / "figures" / "evidence.csv", newline="", encoding="utf-8") as file:
+        assert [cells["verdict"] for cells in csv.DictReader(file)] == [v for _, v in JUDGED]
 
 
-def test_the_page_says_how_many_rows_agree_by_few_degrees_of_freedom(page):
-    agree = [row for _, row in ROWS if row.verdict == AGREES]
-    lenient = [row for row in agree if row.is_lenient]
-    theories = [row for row in lenient if row.tier == "theory"]
-    few = [row for row in theories if row.gap.dof < 6]
-    others = sorted((row.tier, row.quantity) for row in lenient if row.tier != "theory")
-    assert all(raw(row) >= SIGNIFICANT > abs(row.z) for row in lenient)
-    assert {round(row.gap.dof) for row in few} == {3, 5}
-    assert others == [
-        ("exact", "exponent p of T ~ t^-p of a homogeneous cooling gas"),
-        ("simulation", "R of disks driven by white noise, DSMC"),
-    ]
-    dof = [round(row.gap.dof) for row in lenient]
-    assert f"{len(lenient)} of the {len(agree)} rows that agree are 3 or more" in page
-    assert f"({min(dof)} to {max(dof)}). {len(theories)} of them are theories" in page
-    assert f"theories, {len(few)} of these with 3 or 5 degrees of freedom" in page
-
-
-def test_the_page_says_what_z_means(page):
-    sizes = [f"{student_t(SIGNIFICANT, dof):.1f}" for dof in (20, 5, 3)]
-    errors = "combined standard errors with 20 degrees of freedom"
-    assert "z = 3 is {} {}, {} with 5 and {} with 3".format(sizes[0], errors, *sizes[1:]) in page
-
-
-def test_the_page_counts_rows_without_a_published_error(page):
-    rows = [(study, row) for study, row in ROWS if math.isnan(row.theirs.stderr)]
-    unknown = [row for _, row in rows if row.verdict == NOT_KNOWN]
-    far = sorted((study, raw(row)) for study, row in rows if abs(row.z) >= SIGNIFICANT)
-    assert {row.verdict for _, row in rows} == {AGREES, NOT_KNOWN}
-    assert {study for study, _ in rows} == {"exact", "mpemba", "patterns"}
-    assert f"**: {len(rows)} rows are such, of three studies" in page
-    assert f"{len(rows) - len(unknown)} of them agree, {len(unknown)} are not known" in page
-    assert [study for study, _ in far] == ["exact", *3 * ["mpemba"], *2 * ["patterns"]]
-    assert [round(far[one][1]) for one in (0, -2, -1)] == [19, 32, 32]
-
-
-def test_the_page_says_where_simulations_lie(page):
-    z = [row.z for _, row in ROWS if row.tier == "simulation" and math.isfinite(row.z)]
-    sets = (
-        [row.z for study, row in ROWS if study == name and row.tier == "simulation"]
-        for name in ("megias_santos", "mpemba")
-    )
-    assert [f"{np.mean(one):+.1f}" for one in (z, *sets)] == 3 * ["+0.6"]
-    assert page.count("+0.6 on average") == 3
-    assert words("rules/captions/evidence.rst").count("z is +0.6 on average") == 1
-
-
-def test_notes_on_errors_are_as_the_code_makes_them():
-    """The rows of mpemba say what their errors leave out."""
-    notes = module_of(ROOT / "studies" / "mpemba", "evidence")
-    made = {notes.OF_CROSSING, notes.INCOMPLETE, notes.ALONG}
-    assert {row.reason for study, row in ROWS if study == "mpemba"} == made
-
-
-def test_the_study_of_exact_numbers_says_how_far_the_farthest_is():
-    exact = [row for _, row in ROWS if row.tier == "exact"]
-    far, next_far = sorted(exact, key=raw, reverse=True)[:2]
-    largest = max(abs(row.z) for row in exact)
-    assert raw(far) > SIGNIFICANT > raw(next_far) and far.gap.dof == 5
+def test_the_readme_of_exact_quotes_verdicts_and_the_farthest_row():
+    exact = [(row, verdict) for (_, row), verdict in JUDGED if row.tier == "exact"]
+    count = Counter(verdict for _, verdict in exact)
+    assert set(count) == {"agrees", "not tested"}
     readme = words("studies/exact/README.md")
-    assert f"all {len(exact)} have |z| < 3, and {largest:.1f} at most" in readme
-    assert f"{raw(far):.1f} standard errors off, which five degrees of freedom" in readme
+    quoted = (
+        f"Of {len(exact)} rows none differs: {count['agrees']} agree, and {count['not tested']}"
+    )
+    assert quoted in readme
+    farthest = min((row for row, _ in exact), key=lambda row: row.probability)
+    assert f"is {abs(farthest.t):.1f} standard errors off" in readme and farthest.gap.dof == 5
+    assert f"exceed this with probability {farthest.probability:.3f}" in readme
+
+
+def test_the_readme_of_mixtures_quotes_verdicts():
+    members = [(row, verdict) for (study, row), verdict in JUDGED if study == "mixtures"]
+    count = Counter(verdict for _, verdict in members)
+    readme = words("studies/mixtures/README.md")
+    assert f"{count['agrees']} of {len(members)} numbers of the cooling gas" in readme
+    assert f"all; {count['differs']} differ" in readme and count["not tested"] == 1
+    assert all("R of" in row.quantity for row, verdict in members if verdict == "differs")
+    assert f"are {sum(abs(row.t) < 3 for row, _ in members)} of the 48" in readme

@@ -11,14 +11,20 @@ from roughgas import theory
 from roughgas.base import InputError
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
-from roughgas.results.products import write_table
 from roughgas.results.reduce import _share, reduce_points
+from roughgas.results.tables import write_table
 
-ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
+ATTRIBUTES = {
+    "experiment": "sheared",
+    "scale": "small",
+    "dimension": 2,
+    "inertia": 0.5,
+    "particles": 40,
+}
 
 
-def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **others):
-    """One point on disk; R_series rises by 0.02 at the middle of the measured window."""
+def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **further_variables):
+    """Write a point; R_series rises by 0.02 at the middle of the measured window."""
     clock = np.arange(0.0, 13.0)
     variables = {
         "R": ratio,
@@ -35,24 +41,29 @@ def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **others
         "R_series": np.where(clock < 8, ratio, ratio + 0.02),
         "collisions_per_particle" if cooling else "time": clock,
     }
-    about = ABOUT | {"r": r, "beta": beta, "seed": seed, "kernel_source_hash": "k"}
-    about |= attributes or {}
+    attributes_of_point = ATTRIBUTES | {
+        "r": r,
+        "beta": beta,
+        "seed": seed,
+        "kernel_source_hash": "k",
+    }
+    attributes_of_point |= attributes or {}
     path = folder / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
-    write_point(path, Point(variables | others, about))
+    write_point(path, Point(variables | further_variables, attributes_of_point))
     return path
 
 
 @pytest.fixture
 def paths(tmp_path):
-    """Two r, two beta, and three seeds, two, one and none at the four places."""
+    """Two r, two beta, and three seeds, two, one and none at the four points."""
     ratios = {1: 0.20, 2: 0.22, 3: 0.27}
-    whole = {seed: {"R_unsubtracted": 0.1 * seed} for seed in ratios}
-    points = [write(tmp_path, 0.9, -0.5, seed, R, **whole[seed]) for seed, R in ratios.items()]
+    further = {seed: {"R_unsubtracted": 0.1 * seed} for seed in ratios}
+    points = [write(tmp_path, 0.9, -0.5, seed, R, **further[seed]) for seed, R in ratios.items()]
     points += [
-        write(tmp_path, 0.9, 0.5, seed, ratios[seed], equilibrated=seed % 2, **whole[seed])
+        write(tmp_path, 0.9, 0.5, seed, ratios[seed], equilibrated=seed % 2, **further[seed])
         for seed in (1, 2)
     ]
-    return [*points, write(tmp_path, 0.8, 0.5, 3, 0.3, **whole[3])]
+    return [*points, write(tmp_path, 0.8, 0.5, 3, 0.3, **further[3])]
 
 
 def test_means_and_errors_over_seeds(paths, tmp_path):
@@ -64,7 +75,7 @@ def test_means_and_errors_over_seeds(paths, tmp_path):
     assert full.R.item() == pytest.approx(0.23)
     scatter = pytest.approx(np.std([0.2, 0.22, 0.27], ddof=1) / math.sqrt(3))
     assert full.R_stderr_over_seeds.item() == scatter
-    # nothing is known of these runs' own errors
+    # these runs state no error
     assert full.R_stderr.item() == scatter and full.R_dof.item() == 2
     assert full.R_ci95.item() == pytest.approx(4.303 * full.R_stderr.item(), rel=0.05)
     assert full.R_stderr_within.item() == pytest.approx(0.01 * math.sqrt(1 + 4 + 9) / 3)
@@ -78,7 +89,8 @@ def test_means_and_errors_over_seeds(paths, tmp_path):
 
 @pytest.mark.parametrize("runaways, equilibrated", [(0, 1.0), (1, 0.0)])
 def test_a_mixture_of_replicas_over_all_seeds_is_no_steady_state(tmp_path, runaways, equilibrated):
-    """Two replicas a seed are too few to tell by themselves; at the other place none runs away."""
+    """Two replicas a seed are too few for a verdict by themselves; at the other point none runs
+    away."""
     points = []
     for seed, beta in ((seed, beta) for seed in range(1, 7) for beta in (-0.5, 0.5)):
         replicas = 0.27 + 0.001 * np.array([seed, -seed])
@@ -89,15 +101,17 @@ def test_a_mixture_of_replicas_over_all_seeds_is_no_steady_state(tmp_path, runaw
     assert list(read_reduced(tmp_path / "cooling.nc").equilibrated[0]) == [1.0, equilibrated]
 
 
-def test_missing_seeds_and_places(paths, tmp_path):
+def test_missing_seeds_and_points(paths, tmp_path):
     reduce_points(paths, tmp_path / "sheared.nc")
     data = read_reduced(tmp_path / "sheared.nc")
     np.testing.assert_array_equal(data.n_seeds, [[0, 1], [3, 2]])
     two = data.sel(r=0.9, beta=0.5)
     assert np.isnan(two.R_seed.sel(seed=3)) and two.R.item() == pytest.approx(0.21)
     assert two.equilibrated.item() == 0.5
-    one = data.sel(r=0.8, beta=0.5)
-    assert one.R.item() == 0.3 and one.R_stderr.item() == one.R_stderr_within.item() == 0.03
+    single = data.sel(r=0.8, beta=0.5)
+    assert (
+        single.R.item() == 0.3 and single.R_stderr.item() == single.R_stderr_within.item() == 0.03
+    )
     none = data.sel(r=0.8, beta=-0.5)
     assert np.isnan(none.R) and np.isnan(none.R_stderr) and np.isnan(none.R_stderr_within)
 
@@ -124,19 +138,19 @@ def test_the_order_of_the_points_does_not_matter(paths, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_what_cannot_be_reduced_is_refused(paths, tmp_path):
+def test_unequal_points_are_refused(paths, tmp_path):
     out = tmp_path / "out.nc"
     with pytest.raises(InputError, match="number of points"):
         reduce_points([], out)
     with pytest.raises(InputError, match="given once"):
         reduce_points([*paths, paths[0]], out)
-    other = write(tmp_path, 0.7, 0.0, 1, 0.2, attributes={"experiment": "cooling"})
+    cooling = write(tmp_path, 0.7, 0.0, 1, 0.2, attributes={"experiment": "cooling"})
     with pytest.raises(InputError, match="cooling and sheared: must be the same"):
-        reduce_points([*paths, other], out)
+        reduce_points([*paths, cooling], out)
     assert not out.exists()
 
 
-def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
+def test_the_table_has_one_row_for_each_point_with_data(paths, tmp_path):
     reduce_points(paths, tmp_path / "sheared.nc")
     cooling = [write(tmp_path, 0.7, 0.0, 1, 0.3, True, {"experiment": "cooling"}, plateau_end=9.0)]
     reduce_points(cooling, tmp_path / "cooling.nc")
@@ -159,21 +173,21 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
 
 
 def variant(folder, key, value, seed=1, ratio=0.2, beta=0.0, **attributes):
-    """A point of a variant on disk."""
+    """Write a point of a variant."""
     effect_parameter = key.rpartition(".")[2]
     label = value if isinstance(value, str) else f"{value:g}"
-    about = {"swept": key, "swept_value": value, "variant": f"{effect_parameter}{label}"}
+    axis = {"swept": key, "swept_value": value, "variant": f"{effect_parameter}{label}"}
     folder = folder / f"{effect_parameter}{label}"
-    return write(folder, 0.9, beta, seed, ratio, attributes=about | attributes)
+    return write(folder, 0.9, beta, seed, ratio, attributes=axis | attributes)
 
 
-def spun(folder, value, **others):
-    return variant(folder, "spin.inertia", value, inertia=value, **others)
+def spun(folder, value, **options):
+    return variant(folder, "spin.inertia", value, inertia=value, **options)
 
 
 @pytest.fixture
 def inertia(tmp_path):
-    """Three values of inertia, at two beta, but for one place; two seeds."""
+    """Three values of inertia, at two beta, except for one point; two seeds."""
     places = [(1.0, -0.5), (0.02, -0.5), (0.5, -0.5), (1.0, 0.5), (0.02, 0.5)]
     paths = [
         spun(tmp_path, value, seed=seed, ratio=0.1 * value + 0.01 * seed, beta=beta)
@@ -191,9 +205,9 @@ def test_the_parameter_is_a_dimension(inertia):
     np.testing.assert_array_equal(data.inertia, [0.02, 0.5, 1.0])
     assert data.inertia.units == "1" and data.inertia.long_name.endswith(": spin.inertia")
     np.testing.assert_array_equal(data.n_seeds[:, 0], [[2, 2], [2, 0], [2, 2]])
-    place = data.sel(inertia=1.0, r=0.9, beta=0.5)
-    assert place.R.item() == pytest.approx(0.115)
-    assert place.R_stderr_over_seeds.item() == pytest.approx(0.005)
+    point = data.sel(inertia=1.0, r=0.9, beta=0.5)
+    assert point.R.item() == pytest.approx(0.115)
+    assert point.R_stderr_over_seeds.item() == pytest.approx(0.005)
     assert np.isnan(data.R.sel(inertia=0.5, r=0.9, beta=0.5))
 
 
@@ -211,10 +225,10 @@ def test_words_come_in_alphabetical_order_after_numbers(tmp_path):
 
 
 def test_points_of_another_axis_or_of_none_are_refused(tmp_path):
-    other = variant(tmp_path, "walls.roughness", 1.0)
+    roughness = variant(tmp_path, "walls.roughness", 1.0)
     wave = variant(tmp_path, "floor.wave", "sine")
     none = write(tmp_path, 0.9, 0.0, 1, 0.2)
-    for pair in ([wave, other], [wave, none], [none, wave]):
+    for pair in ([wave, roughness], [wave, none], [none, wave]):
         with pytest.raises(InputError, match=r"swept of the points = .* must be the same"):
             reduce_points(pair, tmp_path / "out.nc")
     with pytest.raises(InputError, match="given once"):
@@ -240,6 +254,6 @@ def test_the_table_has_a_row_for_each_value(inertia, tmp_path):
 
 
 def test_the_share_of_trusted_seeds_is_that_of_all_seeds():
-    """Of those that were found; not known where half of them or more are not."""
+    """Of the seeds with a verdict; unknown if half of them or more have none."""
     verdicts = np.array([[1, 1, 1, -1, -1], [1, 1, -1, -1, np.nan], [1, 0, 0, 0, -1]], float)
     assert _share(verdicts) == pytest.approx([0.6, -1.0, 0.2])

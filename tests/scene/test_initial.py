@@ -1,11 +1,11 @@
-"""Where particles are at the start."""
+"""Initial positions and velocities."""
 
 import numpy as np
 import pytest
 from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
 from roughgas.scene import initial
-from roughgas.scene.initial import check_places, random_positions
+from roughgas.scene.initial import check_positions, random_positions
 
 CASES = {
     **{name: settings(name) for name in KERNELS},
@@ -29,7 +29,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_no_overlap_no_momentum_no_spin(case):
+def test_particles_start_without_overlap_momentum_or_spin(case):
     experiment = CASES[case]
     for seed in range(3):
         beta = 0.0 if "spin" in experiment["effects"] else -1.0
@@ -42,19 +42,21 @@ def test_no_overlap_no_momentum_no_spin(case):
             assert largest_overlap(state, scene, world) < 0.0
         if state.spin is not None:
             assert state.spin.shape == (number, 2 * dimension - 3) and np.all(state.spin == 0.0)
-        assert np.abs(velocity.sum(axis=0) - flow(scene, position).sum(axis=0)).max() < 1e-11
-        inside(experiment, position)
+        assert np.abs(velocity.sum(axis=0) - mean_flow(scene, position).sum(axis=0)).max() < 1e-11
+        assert_inside_box(experiment, position)
 
 
-def flow(scene, position):
-    mean = np.zeros_like(position)
+def mean_flow(scene, position):
+    """Velocity of the mean shear flow at each position, (N, D)."""
+    velocity = np.zeros_like(position)
     if scene.effects.shear:
         height = scene.box[1]
-        mean[:, 0] = scene.effects.shear.velocity * (position[:, 1] / height - 0.5)
-    return mean
+        velocity[:, 0] = scene.effects.shear.velocity * (position[:, 1] / height - 0.5)
+    return velocity
 
 
-def inside(experiment, position):
+def assert_inside_box(experiment, position):
+    """Assert that all particles are inside the box, above the floor and between the walls."""
     effects = experiment["effects"]
     for axis, length in enumerate(experiment["box"]):
         if length != "open":
@@ -72,11 +74,12 @@ def test_the_temperature_is_one():
     for seed in range(20):
         scene, state = begin(settings("sheared"), 0.9, 0.0, seed)
         position, velocity = np.split(state.trajectory[:, :-1], 2, axis=1)
-        squares.append(((velocity - flow(scene, position)) ** 2).sum() / (2 * 159))
+        squares.append(((velocity - mean_flow(scene, position)) ** 2).sum() / (2 * 159))
     assert np.mean(squares) == pytest.approx(1.0, abs=4.0 / np.sqrt(20 * 159))
 
 
 SPREAD = {"distribution": "uniform", "deviation": 0.2}
+BED = settings("bed")["effects"]
 WALLS = {"walls": {"restitution": 1.0, "roughness": -1.0}}
 CROWDED = {
     "ratio 100": ([{"number": 1, "radius": 100}, {"number": 500}], [450, 450], {}),
@@ -84,40 +87,48 @@ CROWDED = {
     "two sizes, packed": ([{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}], [70, 70], {}),
     "between walls": ([{"number": 3, "radius": 8}, {"number": 160}], [50, 50], WALLS),
     "spheres": ([{"number": 2, "radius": 6}, {"number": 500}], [30, 30, 30], {}),
-    "a bed": ([{"number": 3, "radius": 8}, {"number": 160}], [50, "open"], None),
+    "a bed": ([{"number": 3, "radius": 8}, {"number": 160}], [50, "open"], BED),
+    "a bed between walls": (
+        [{"number": 2, "radius": 3}, {"number": 58, "radius": 0.3}],
+        [20, "open"],
+        BED | WALLS,
+    ),
 }
 
 
 @pytest.mark.parametrize("case", CROWDED)
-def test_nothing_overlaps(case):
+def test_particles_of_crowded_mixtures_start_without_overlap(case):
     species, box, effects = CROWDED[case]
-    number = sum(one.get("number", 200) for one in species)
-    effects = settings("bed")["effects"] if effects is None else effects
+    number = sum(kind.get("number", 200) for kind in species)
     experiment = {"particles": number, "box": box, "effects": effects, "species": species}
     scene, state = begin(experiment, 0.9, 0.3 if "spin" in effects else -1.0, 1)
-    places, radius = state.trajectory[:, : len(box)], state.bodies.radius
-    check_places(scene, places, 0.0, radius)
-    assert np.bincount(state.bodies.species).tolist() == [one.get("number", 200) for one in species]
+    positions, radius = state.trajectory[:, : len(box)], state.bodies.radius
+    check_positions(scene, positions, 0.0, radius)
+    assert np.bincount(state.bodies.species).tolist() == [
+        kind.get("number", 200) for kind in species
+    ]
     if case == "packed":
         assert 0.65 < np.pi * np.sum(radius**2) / 900.0
     if case == "a bed":
-        assert np.ptp(places[:, 1]) < 250.0  # no lattice of the largest
+        assert np.ptp(positions[:, 1]) < 250.0  # denser than a lattice of the largest
 
 
-def test_particles_end_where_they_are_pushed_on_the_side_that_is_free():
-    """One axis repeats, the other does not."""
+def test_a_narrow_box_with_a_periodic_axis_is_filled():
+    """The first axis is periodic, the second is not; a box that is too narrow has no solution."""
     radius, rng = np.full(6, 1.0), np.random.default_rng(0)
-    found = random_positions(radius, [11.5, 3.5], [True, False], rng)  # a lattice has five sites
-    assert found[:, 1].min() >= 1.0 and found[:, 1].max() <= 2.5
+    positions = random_positions(
+        radius, [11.5, 3.5], [True, False], rng
+    )  # a lattice has five sites
+    assert positions[:, 1].min() >= 1.0 and positions[:, 1].max() <= 2.5
     assert random_positions(radius, [11.5, 1.6], [True, False], rng) is None
 
 
 def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs(monkeypatch):
-    """Its sites would be 2.5e9."""
+    """A lattice of the smallest particles would have 2.5e9 sites."""
     monkeypatch.setattr(initial, "MOST_OF_A_CLASS", 40_000)
     radius = np.array([10.0, *[0.001] * 99])
-    found = random_positions(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
-    apart = found[1:] - found[0]
-    apart -= 100.0 * np.round(apart / 100.0)
-    assert len(found) == 100 and np.hypot(*apart.T).min() > 10.001
-    assert np.ptp(found, axis=0).min() > 50.0
+    positions = random_positions(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
+    separations = positions[1:] - positions[0]
+    separations -= 100.0 * np.round(separations / 100.0)
+    assert len(positions) == 100 and np.hypot(*separations.T).min() > 10.001
+    assert np.ptp(positions, axis=0).min() > 50.0

@@ -1,30 +1,30 @@
-"""What scenes may be made of, and what is said about the others."""
+"""Legal scenes are built, and illegal ones are refused."""
 
 import math
 
 import pytest
+from raw import build, check
 
 from roughgas.base import InputError
 from roughgas.effects.motions import sawtooth
-from roughgas.scene import build
-from roughgas.scene.initial import check
 
 SPIN = {"spin": {"inertia": 0.5}}
 GRAVITY = {"gravity": {"acceleration": 1}}
 FLOOR = {"floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1}}
 WALLS = {"walls": {"restitution": 1, "roughness": 1}}
 SHEAR = {"shear": {"velocity": 2}}
-TIME = {"contact_time": {"duration": 1e-5}}
+CONTACT_TIME = {"contact_time": {"duration": 1e-5}}
 FRICTION = {"friction": {"mu": 0.5}}
 HEAT = {"thermostat": {"power": 1, "spin_share": 0.5, "interval": 0.5}}
 BED = SPIN | GRAVITY | FLOOR
 
 
 def experiment(box=(50, 50), particles=20, **effects):
+    """Settings of an experiment with these effects."""
     return {"particles": particles, "box": list(box), "effects": effects}
 
 
-def test_a_gas():
+def test_a_scene_has_the_settings_of_a_gas():
     scene = build(experiment((50, 60), **SPIN), 0.9, -0.5)
     assert scene.box == (50.0, 60.0) and scene.extent == 50.0 and scene.middle == 30.0
     assert (scene.restitution, scene.roughness) == (0.9, -0.5)
@@ -32,18 +32,20 @@ def test_a_gas():
     assert {name for name in scene.effects._fields if getattr(scene.effects, name)} == {"spin"}
 
 
-def test_a_bed_between_walls():
+def test_a_scene_has_the_settings_of_a_bed_between_walls():
     scene = build(experiment((50, "open"), **BED, **WALLS), 0.9, -0.5)
     assert (
-        scene.box == (None, None) and scene.extent == 50.0 and scene.effects.walls.place.at == 50.0
+        scene.box == (None, None)
+        and scene.extent == 50.0
+        and scene.effects.walls.side.position == 50.0
     )
     floor = scene.effects.floor
     assert (*floor[1:3], floor.motion) == (1.0, -1.0, sawtooth(5.0, 1.0))
 
 
-def test_the_particles_own_material_at_a_boundary():
-    own = {"restitution": "particles", "roughness": "particles"}
-    effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}
+def test_a_boundary_may_have_the_material_of_the_particles():
+    material = {"restitution": "particles", "roughness": "particles"}
+    effects = BED | {"floor": FLOOR["floor"] | material, "walls": material}
     scene = build(experiment((50, "open"), **effects), 0.9, -0.5)
     assert scene.effects.floor[1:3] == scene.effects.walls[1:3] == (0.9, -0.5)
 
@@ -54,7 +56,7 @@ def test_the_contact_time_model_acts_below_an_r(r, present):
     assert (build(experiment(**SPIN, **model), r, 0.0).effects.contact_time is not None) == present
 
 
-LEGAL = BED | FRICTION | HEAT | TIME | SHEAR | WALLS
+LEGAL = BED | FRICTION | HEAT | CONTACT_TIME | SHEAR | WALLS
 ILLEGAL = {
     "spin.inertia": (0, -1, 1.1, math.nan, "x", True, ...),
     "gravity.acceleration": (0, -1, math.nan, math.inf, None),
@@ -72,20 +74,20 @@ ILLEGAL = {
     "contact_time.duration": (0, -1e-5, math.nan),
     "contact_time.below_r": (1.5,),
 }
-"""Values of parameters; ... stands for none at all."""
+"""Illegal values of parameters; ... stands for an effect without its parameters."""
 
 
 @pytest.mark.parametrize("key", ILLEGAL)
-def test_illegal_parameters(key):
+def test_illegal_parameters_are_refused(key):
     name, parameter = key.split(".")
-    around = BED if name in ("gravity", "floor") else SPIN
+    basis = BED if name in ("gravity", "floor") else SPIN
     for value in ILLEGAL[key]:
-        own = {} if value is ... else LEGAL[name] | {parameter: value}
-        assert refusal(around | {name: own}).key == f"effects.{key}", value
+        parameters = {} if value is ... else LEGAL[name] | {parameter: value}
+        assert refusal(basis | {name: parameters}).key == f"effects.{key}", value
 
 
 def refusal(effects, box=None, beta=0.0, **settings):
-    """The error with which a scene is built or checked."""
+    """The InputError on building or checking a scene."""
     box = box or (50, "open" if {"floor", "gravity"} & set(effects) else 50)
     with pytest.raises(InputError) as caught:
         build(experiment(box, **effects), 0.9, beta)
@@ -101,16 +103,15 @@ def refusal(effects, box=None, beta=0.0, **settings):
         ((50, 50), WALLS | {"walls": {"restitution": 1, "roughness": "particles"}}, {}),
         ((50, 50), {"thermostat": HEAT["thermostat"] | {"spin_share": 0}}, {}),
         ((50, 50), SPIN | HEAT | FRICTION | SHEAR, {}),
-        ((50, 50), SPIN, {"schedule": {"target_stderr": 0.01}}),
-        ((50, 50, "open"), BED | SHEAR | HEAT | FRICTION | TIME, {}),
-        ((50, "open"), GRAVITY | FLOOR | TIME, {}),
+        ((50, 50, "open"), BED | SHEAR | HEAT | FRICTION | CONTACT_TIME, {}),
+        ((50, "open"), GRAVITY | FLOOR | CONTACT_TIME, {}),
     ],
 )
-def test_what_goes_together(box, effects, settings):
+def test_compatible_effects_are_accepted(box, effects, settings):
     check(experiment(box, **effects) | settings)
 
 
-def test_too_many_particles_for_the_box():
+def test_too_many_particles_for_the_box_are_refused():
     check(experiment((8.1, 8.1), 16, **SPIN))
     with pytest.raises(InputError) as caught:
         check(experiment((8.1, 8.1), 17, **SPIN))

@@ -5,20 +5,19 @@ import math
 import numpy as np
 import pytest
 from brute_force import begin, run, settings
+from raw import build, run_point
 from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
-from roughgas.scene import build
 from roughgas.simulation.energies import (
-    balance,
     energies,
-    energy_exchange,
     fitted_flow,
-    imbalance,
     ratio_of_means,
+    vertical_share,
 )
-from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
-from roughgas.statistics.errors import NO, UNKNOWN, YES
+from roughgas.simulation.energy_balance import balance, energy_exchange, imbalance
+from roughgas.simulation.point import NUMBERS_OF_FLAG, _withdrawn_verdicts
+from roughgas.statistics.errors import NO, UNKNOWN, YES, blocking
 
 PARTICLES, BOX, SHEAR_RATE = 12, 50.0, 0.04
 
@@ -62,6 +61,20 @@ def test_energies_are_those_of_the_definition(gas):
     )
 
 
+def test_the_vertical_share_of_the_energy_has_the_error_of_a_ratio(gas):
+    v, spin, y, q = gas
+    columns = columns_of(v, spin, y)
+    translational = energies(columns, PARTICLES, q).translational
+    result = vertical_share(columns, translational, PARTICLES, 1)
+    vertical, total = (v[:, :, -1] ** 2).sum(axis=1), (v**2).sum(axis=(1, 2))
+    share = vertical.mean() / total.mean()
+    assert result["vertical_share"] == pytest.approx(share)
+    # of independent samples: the standard error of a ratio of means
+    rest = (vertical - share * total) / total.mean()
+    expected, _ = blocking(rest)
+    assert result["vertical_share_stderr"] == pytest.approx(expected)
+
+
 def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(gas):
     v, spin, y, q = gas
     result = energies(columns_of(v, spin, y), PARTICLES, q, SHEAR_RATE)
@@ -72,22 +85,22 @@ def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(ga
 
 
 def test_no_bias_of_order_one_over_n_when_momentum_and_mean_spin_are_removed():
-    """Equipartition reads R = 1/2 even for N = 8, where one spin in eight is taken away."""
+    """Equipartition gives R = 1/2 even for N = 8, where the mean spin is subtracted."""
     rng = np.random.default_rng(1)
     samples, particles, q = 20000, 8, 0.5
     v = rng.normal(size=(samples, particles, 2))
     v -= v.mean(axis=1, keepdims=True)
     spin = rng.normal(size=(samples, particles, 1)) / np.sqrt(q)
     result = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q, SHEAR_RATE)
-    # It scatters by sqrt(2/14 + 2/7)/(4 sqrt(20000)) = 0.0012: 3 sigma, by chance 1 in 370.
+    # R scatters by sqrt(2/14 + 2/7)/(4 sqrt(20000)) = 0.0012: 3 sigma, by chance 1 in 370.
     assert ratio_of_means(result) == pytest.approx(0.5, abs=0.0035)
-    # As they are, with the whole spin kept: 1/(1 + 7/8), 27 sigma from 1/2.
-    whole = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q)
-    assert ratio_of_means(whole) == pytest.approx(8 / 15, abs=0.0035)
+    # Without subtraction of the mean spin: 1/(1 + 7/8), 27 sigma from 1/2.
+    unsubtracted = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q)
+    assert ratio_of_means(unsubtracted) == pytest.approx(8 / 15, abs=0.0035)
 
 
-def test_a_line_that_fits_the_flow_is_taken_off():
-    """What is left has neither mean velocity nor gradient; beside a weighted regression."""
+def test_the_fitted_linear_flow_is_subtracted():
+    """The residual has no mean velocity and no gradient, as by a weighted regression."""
     rng = np.random.default_rng(5)
     y, m = rng.uniform(-10, 10, 50), rng.uniform(0.5, 2.0, 50)
     v = np.stack([0.3 + 0.7 * y + rng.standard_normal(50), rng.standard_normal(50)])
@@ -101,10 +114,10 @@ def test_a_line_that_fits_the_flow_is_taken_off():
     }
     columns = {name: np.array([value]) for name, value in columns.items()}
     slope, level = np.polyfit(y, v[0], 1, w=np.sqrt(m))
-    rest = v[0] - level - slope * y
-    expected = (m * rest**2).sum() + (m * v[1] ** 2).sum()
-    found = energies(columns, 50, None, mass=m.sum())
-    assert found.translational == pytest.approx(expected / 200, rel=1e-12)
+    residual = v[0] - level - slope * y
+    expected = (m * residual**2).sum() + (m * v[1] ** 2).sum()
+    result = energies(columns, 50, None, mass=m.sum())
+    assert result.translational == pytest.approx(expected / 200, rel=1e-12)
     assert fitted_flow(columns, m.sum())[0] == pytest.approx(slope, rel=1e-12)
 
 
@@ -120,7 +133,7 @@ SOURCES = {
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_a_point_says_what_each_source_has_put_in(name, tmp_path):
+def test_a_point_states_the_energy_input_of_each_source(name, tmp_path):
     experiment, sources = SOURCES[name]
     point = run_point(build(experiment, 0.9, 0.2), experiment, 3)
     point.attributes.update(experiment="one", scale="small")
@@ -132,24 +145,24 @@ def test_a_point_says_what_each_source_has_put_in(name, tmp_path):
     scale = np.abs(data.energy_input.values).sum()
     assert data.energy_gain.values == pytest.approx(total, abs=1e-12 * scale)
     assert 0.0 <= data.energy_imbalance < 1e-12
-    # contacts turn translation into rotation, and take more than they give
+    # contacts convert translation into rotation, and dissipate energy
     by_contacts = data.energy_input.sel(source="contacts")
     assert by_contacts.sum() < 0.0
-    assert ("R_corrected" in data) == (name == "gas")  # which conserves its momentum
+    assert ("R_corrected" in data) == (name == "gas")  # only this gas conserves its momentum
     if name != "gas":
         assert data.energy_input.sel(source=sources[0], motion="translation") > 0.0
 
 
-def test_the_books_of_a_refreshed_gas_are_in_the_units_of_the_start():
+def test_the_energy_balance_of_a_refreshed_gas_is_in_initial_units():
     scene, state = begin(settings("gas", 40, [25, 25]), 0.6, 0.2, 9)
     before = balance(state, scene)
     run(state, scene, 100, collisions=40, refresh=4)
-    found = energy_exchange(before, balance(state, scene), scene, 40)
-    assert found["energy_input"].sum() == pytest.approx(-before.energy.sum() / 40, rel=1e-6)
-    assert found["energy_imbalance"] < 1e-13
+    exchange = energy_exchange(before, balance(state, scene), scene, 40)
+    assert exchange["energy_input"].sum() == pytest.approx(-before.energy.sum() / 40, rel=1e-6)
+    assert exchange["energy_imbalance"] < 1e-13
 
 
-def test_what_is_missing_is_seen():
+def test_missing_energy_is_an_imbalance():
     booked = np.array([[3.0, 0.0], [-1.0, -0.5]])
     assert imbalance(booked, np.array([2.0, -0.5])) == 0.0
     assert imbalance(booked, np.array([2.0, -0.05])) == pytest.approx(0.1)
@@ -161,47 +174,54 @@ GAS = settings("gas", 20, [20, 20]) | {"schedule": COOLING}
 
 
 def point(experiment, r, beta):
+    """The variables of a point."""
     return run_point(build(experiment, r, beta), experiment, 1).variables
 
 
 @pytest.mark.parametrize("experiment", [SHEARED, GAS], ids=["driven", "cooling"])
-def test_smooth_particles_have_an_R_that_is_known_for_certain(experiment):
-    found = point(experiment, 0.9, -1.0)
-    assert found["R"] == found["R_stderr"] == found["R_ci95"] == 0.0 and found["R_ci95_trusted"]
-    assert found["autocorrelation_time"] == 1.0  # one sample, or one period
+def test_smooth_particles_have_R_zero_without_error(experiment):
+    variables = point(experiment, 0.9, -1.0)
+    assert (
+        variables["R"] == variables["R_stderr"] == variables["R_ci95"] == 0.0
+        and variables["R_ci95_trusted"]
+    )
+    assert variables["autocorrelation_time"] == 1.0  # in samples or periods
 
 
 @pytest.mark.parametrize("inertia", [1e-6, 1.0])
-def test_any_legal_moment_of_inertia_gives_numbers(inertia):
+def test_any_legal_moment_of_inertia_gives_finite_numbers(inertia):
     experiment = SHEARED | {"effects": SHEARED["effects"] | {"spin": {"inertia": inertia}}}
-    found = point(experiment, 0.9, 0.5)
-    names = set(VOUCHED["R_ci95_trusted"]) - {"R_corrected"}  # which a sheared gas does not have
-    assert all(np.isfinite(found[name]) for name in names)
-    assert found["energy_imbalance"] < 1e-11
+    variables = point(experiment, 0.9, 0.5)
+    names = set(NUMBERS_OF_FLAG["R_ci95_trusted"]) - {"R_corrected"}  # absent in a sheared gas
+    assert all(np.isfinite(variables[name]) for name in names)
+    assert variables["energy_imbalance"] < 1e-11
 
 
 def test_no_verdict_vouches_for_a_number_that_is_not_finite():
-    sound = dict.fromkeys(VOUCHED, YES) | dict.fromkeys(VOUCHED["R_ci95_trusted"], 0.5)
-    assert _withdrawn(sound) == {}
-    assert _withdrawn(sound | {"R_stderr": math.nan}) == {"R_ci95_trusted": UNKNOWN}
-    assert _withdrawn(sound | {"R": math.nan}) == dict.fromkeys(VOUCHED, UNKNOWN)
-    drifting = sound | {"R": math.nan, "equilibrated": NO}  # which R does not unsay
-    assert _withdrawn(drifting) == {"R_ci95_trusted": UNKNOWN}
-    smooth = {"E_trans": math.inf, "equilibrated": YES}  # where nothing spins
-    assert _withdrawn(smooth) == {"equilibrated": UNKNOWN}
+    sound = dict.fromkeys(NUMBERS_OF_FLAG, YES) | dict.fromkeys(
+        NUMBERS_OF_FLAG["R_ci95_trusted"], 0.5
+    )
+    assert _withdrawn_verdicts(sound) == {}
+    assert _withdrawn_verdicts(sound | {"R_stderr": math.nan}) == {"R_ci95_trusted": UNKNOWN}
+    assert _withdrawn_verdicts(sound | {"R": math.nan}) == dict.fromkeys(NUMBERS_OF_FLAG, UNKNOWN)
+    drifting = sound | {"R": math.nan, "equilibrated": NO}  # "not equilibrated" stays
+    assert _withdrawn_verdicts(drifting) == {"R_ci95_trusted": UNKNOWN}
+    smooth = {"E_trans": math.inf, "equilibrated": YES}  # without spin
+    assert _withdrawn_verdicts(smooth) == {"equilibrated": UNKNOWN}
 
 
-def test_few_particles_share_energy_as_their_degrees_of_freedom_say():
-    """Elastic, perfectly rough disks have one energy for each of 2 (N - 1) velocities and N spins.
+def test_few_particles_share_energy_by_their_degrees_of_freedom():
+    """Elastic, perfectly rough disks have equal energies in 2 (N - 1) velocities and N spins.
 
-    So R from the mean energies is N/(2 N - 1), and 1/2 where what is conserved is not counted.
-    Within 4 standard errors, which fails in 1 of 16 000 seeds; uncorrected it is 10 of them away.
+    So R from the mean energies is N/(2 N - 1), and 1/2 after the correction for conserved momentum.
+    Within 4 standard errors, which fails for 1 of 16 000 seeds; without the correction R is off by
+    10 standard errors.
     """
     number = 5
     experiment = settings("gas", number, [20, 20]) | {
         "schedule": {"kind": "steady", "equilibrate": 200, "measure": 300_000, "sample_every": 5}
     }
     point = run_point(build(experiment, 1.0, 1.0), experiment, 2)
-    found, error = point.variables, point.variables["R_stderr"]
-    assert found["R_corrected"] == pytest.approx(0.5, abs=4 * error)
-    assert found["R_ratio_of_means"] - found["R_corrected"] > 10 * error
+    variables, error = point.variables, point.variables["R_stderr"]
+    assert variables["R_corrected"] == pytest.approx(0.5, abs=4 * error)
+    assert variables["R_ratio_of_means"] - variables["R_corrected"] > 10 * error

@@ -1,30 +1,30 @@
-"""How long a driven gas remembers: theory beside measured memories, and the verdicts on it."""
+"""Memories of driven gases: theory against measured ones, and verdicts that depend on them."""
 
 import math
 
 import numpy as np
 import pytest
-from brute_force import begin
+from brute_force import KERNELS, begin
+from raw import build, protocols, steady, theory_mixture
 
 import roughgas
 from roughgas.base import InputError
-from roughgas.scene import build, for_theory
-from roughgas.simulation import schedule, steady
-from roughgas.simulation.memory import (
-    Thermal,
+from roughgas.simulation.gas_memory import (
+    ThermalState,
     _with_total_momentum,
-    drags,
-    memory,
+    drag_rates,
+    gas_memory,
     spin_share,
 )
+from roughgas.simulation.simulation import Simulation
 from roughgas.statistics.errors import (
-    LEAST,
+    MINIMUM_SAMPLE_SIZE,
     NO,
     UNKNOWN,
     YES,
-    Evidence,
+    SampleSize,
     autocorrelation_time,
-    lack_of,
+    describe_shortfall,
     verdict,
 )
 
@@ -38,6 +38,7 @@ THERMAL = {"left_wall": {"temperature": 1.0}, "right_wall": {"temperature": 1.0}
 
 
 def kicks(power=0.1, share=0.0):
+    """Settings of a thermostat."""
     return {"thermostat": {"power": power, "interval": 0.5, "spin_share": share}}
 
 
@@ -62,70 +63,72 @@ MEASURED = {
 }
 
 
-def scene_of(effects, r, beta, particles=40, side=25.0, **more):
+def scene_of(effects, r, beta, particles=40, side=25.0, **changes):
+    """(scene, settings) of disks with these effects."""
     box = [side, "open"] if "gravity" in effects else [side, side]
-    settings = {"particles": particles, "box": box, "effects": SPIN | effects, **more}
+    settings = {"particles": particles, "box": box, "effects": SPIN | effects, **changes}
     return build(settings, r, beta), settings
 
 
 def state_of(T_tr, R, frequency, particles, side, effects=()):
+    """The thermal state of a gas with these temperatures and frequency of contacts."""
     top = math.inf if "gravity" in effects else side
     T_rot = None if R == 0 else np.array([T_tr * R / (1.0 - R)])
-    return Thermal(np.array([T_tr]), T_rot, frequency, particles, (side, top))
+    return ThermalState(np.array([T_tr]), T_rot, frequency, particles, (side, top))
 
 
 @pytest.mark.parametrize("name", MEASURED)
-def test_theory_knows_the_memory_of_R_within_a_factor(name):
-    """Within 2.1 of what long runs measure: drag, friction and walls have their part in it."""
+def test_the_predicted_memory_of_R_is_right_within_a_factor(name):
+    """Within 2.1 of the memory in long runs, with drag, friction or walls as well."""
     effects, r, beta, particles, side, T_tr, R, frequency, measured = MEASURED[name]
     scene, _ = scene_of(effects, r, beta, particles, side)
     state = state_of(T_tr, R, frequency, particles, side, effects)
-    assert 1.0 / 2.1 < memory(scene, state).of_R / measured < 2.1
+    assert 1.0 / 2.1 < gas_memory(scene, state).of_R / measured < 2.1
 
 
 def test_a_mixture_remembers_as_long_as_its_slowest_exchange():
     species = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2.0}]
     scene, settings = scene_of(kicks(), 0.9, 0.0, 40, 40.0, species=species)
-    state = Thermal(np.array([1.44, 1.40]), np.array([0.36, 0.35]), 0.32, 40, (40.0, 40.0))
-    assert 0.5 < memory(scene, state, for_theory(scene, settings), 0.2).of_R / 12.8 < 2.0
+    state = ThermalState(np.array([1.44, 1.40]), np.array([0.36, 0.35]), 0.32, 40, (40.0, 40.0))
+    assert 0.5 < gas_memory(scene, state, theory_mixture(scene, settings), 0.2).of_R / 12.8 < 2.0
 
 
 @pytest.mark.parametrize("packing", [0.0, 0.5])
 def test_a_species_that_nothing_distinguishes_changes_no_memory(packing):
-    """Whatever the packing: the frequency of contacts is that which is measured."""
+    """At any packing, for the measured frequency of contacts."""
     alike = [{"fraction": 0.3}, {"fraction": 0.7}]
     scene, settings = scene_of(kicks(0.1, 0.3), 0.9, -0.5, species=alike)
     single, _ = scene_of(kicks(0.1, 0.3), 0.9, -0.5)
-    mixed = Thermal(np.full(2, 0.8), np.full(2, 0.2), 0.5, 40, (25.0, 25.0))
-    point = memory(scene, mixed, for_theory(scene, settings), packing)
-    expected = memory(single, state_of(0.8, 0.2, 0.5, 40, 25.0))
+    mixed = ThermalState(np.full(2, 0.8), np.full(2, 0.2), 0.5, 40, (25.0, 25.0))
+    point = gas_memory(scene, mixed, theory_mixture(scene, settings), packing)
+    expected = gas_memory(single, state_of(0.8, 0.2, 0.5, 40, 25.0))
     assert point.of_R == pytest.approx(expected.of_R, rel=1e-3)
     assert point.energies == pytest.approx(expected.energies, rel=1e-3)
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.3, 1.0])
-def test_friction_slows_the_exchange_as_a_slow_integration_says(mu):
-    """The memory is twice the e-fold of a disturbance of R at constant energy: 3 %."""
+def test_the_memory_with_friction_is_that_of_a_numerical_integration(mu):
+    """The memory is twice the relaxation time of R at constant energy, to 3 %."""
     scene, _ = scene_of(kicks() | {"friction": {"mu": mu}}, 0.9, 0.5)
     R = float(roughgas.theory.friction_ratio(0.9, 0.5, mu, 2, 0.5, 0.0))
     state, nu = np.array([1.0 - R, R]), 0.5
-    of_R = memory(scene, state_of(state[0], R, nu, 40, 25.0)).of_R
+    of_R = gas_memory(scene, state_of(state[0], R, nu, 40, 25.0)).of_R
     disturbed, steps = state + 1e-3 * np.array([-0.5, 1.0]), 2000
     for _ in range(steps):  # for the time of_R: two e-folds
         T_tr, T_rot = roughgas.theory.friction_changes(*disturbed, 0.9, 0.5, mu, 2, 0.5)
-        loss = 2.0 * T_tr + T_rot  # which the drive replaces by translation
+        loss = 2.0 * T_tr + T_rot  # the drive replaces it by translation
         disturbed = disturbed + nu * of_R / steps * np.array([T_tr - loss / 2.0, T_rot])
     assert disturbed[1] - R == pytest.approx(1e-3 * math.exp(-2.0), rel=0.03)
 
 
-def test_a_heated_gas_settles_as_a_slow_integration_says():
-    """The e-fold of the energies, by the Runge-Kutta method with Enskog's frequency: 3 %."""
+def test_a_heated_gas_settles_as_in_a_numerical_integration():
+    """The relaxation time of the energies, by Runge-Kutta with Enskog's frequency, to 3 %."""
     scene, _ = scene_of(kicks(), 0.9, 0.0)
     r, beta, phi, power = 0.9, 0.0, 0.05, 0.1
     T_tr, T_rot = (x[-1] for x in theory_run(np.array([2000.0]), 1.0, 0.2))
     nu = float(roughgas.theory.collision_frequency(T_tr, phi, 2))
-    state = Thermal(np.array([T_tr]), np.array([T_rot]), nu, 40, (25.0, 25.0))
-    settling = memory(scene, state).energies
+    state = ThermalState(np.array([T_tr]), np.array([T_rot]), nu, 40, (25.0, 25.0))
+    settling = gas_memory(scene, state).energies
     times = settling * np.array([6.0, 8.0])
     disturbed, _ = theory_run(times, 1.02 * T_tr, 1.02 * T_rot)
     decayed = math.log((disturbed[0] - T_tr) / (disturbed[1] - T_tr))
@@ -134,36 +137,38 @@ def test_a_heated_gas_settles_as_a_slow_integration_says():
 
 
 def theory_run(times, T_tr, T_rot):
+    """Temperatures of the heated gas by numerical integration."""
     return roughgas.theory.driven_temperatures(times, T_tr, T_rot, 0.9, 0.0, 0.05, power=0.1)
 
 
-def test_nothing_is_remembered_for_ever_but_by_what_never_relaxes():
+def test_the_memory_is_infinite_only_without_relaxation():
     scene, _ = scene_of(kicks(), 0.9, -1.0)
-    never = memory(scene, state_of(1.0, 0.3, 0.5, 40, 25.0))
+    never = gas_memory(scene, state_of(1.0, 0.3, 0.5, 40, 25.0))
     assert never.of_R == never.energies == math.inf
-    smooth = memory(scene, state_of(1.0, 0, 0.5, 40, 25.0))
+    smooth = gas_memory(scene, state_of(1.0, 0, 0.5, 40, 25.0))
     assert smooth.of_R == 0.0 and smooth.energies < 100.0
-    alone = memory(scene, state_of(1.0, 0.3, 0.0, 40, 25.0))
+    alone = gas_memory(scene, state_of(1.0, 0.3, 0.0, 40, 25.0))
     assert alone.of_R == alone.flow == math.inf
 
 
 def test_the_momentum_of_a_bath_is_remembered_as_long_as_the_drag_lasts():
-    """Weak drag on a few particles, kept far below the temperature of their bath."""
+    """Weak drag on a few particles that are far colder than their bath."""
     weak = {"langevin": {"interval": 0.5, "drag": 1e-4, "temperature": 1e4}}
     scene, _ = scene_of(weak, 0.9, 0.0)
-    point = memory(scene, state_of(1.0, 0.2, 0.5, 40, 25.0))
-    assert drags(scene) == (pytest.approx(1e-4), 0.0)
+    point = gas_memory(scene, state_of(1.0, 0.2, 0.5, 40, 25.0))
+    assert drag_rates(scene) == (pytest.approx(1e-4), 0.0)
     assert point.flow == pytest.approx(1e4) and point.of_R == pytest.approx(1e4, rel=0.01)
     near = {"langevin": BATH}
-    elastic = memory(scene_of(near, 1.0, 0.0)[0], state_of(1.0, 0.2, 0.5, 40, 25.0))
+    elastic = gas_memory(scene_of(near, 1.0, 0.0)[0], state_of(1.0, 0.2, 0.5, 40, 25.0))
     assert elastic.of_R < 12.0
 
 
+@pytest.mark.slow
 def test_the_momentum_has_its_share_of_the_memory():
-    """Of a sum of two energies: all particles at T_tr = 1, and the total momentum of a bath at 12.
+    """The memory of a sum of energies: of particles at T_tr = 1 and of the momentum, at 12.
 
-    As a series of random numbers has it, to 8 % (2.5 standard errors): energies of 2 N = 80
-    components that forget within 10 T, and of a momentum of two components that lasts 100 T.
+    Against series of random numbers, to 8 % (2.5 standard errors): energies of 2 N = 80 components
+    with a memory of 10 T, and of a momentum of two components with a memory of 100 T.
     """
     number, drag, steps = 40, 0.01, 400_000
     scene, _ = scene_of(
@@ -177,8 +182,8 @@ def test_the_momentum_has_its_share_of_the_memory():
         momentum[:, k] = math.exp(-drag) * momentum[:, k - 1] + kick[:, k]
         gas[k] = 0.95 * gas[k - 1] + noise[k]
     energy = gas + (momentum**2).sum(axis=0)
-    own = (1.0 + 0.95) / (1.0 - 0.95)  # T, of the gas alone
-    point = _with_total_momentum(own, scene, state)
+    memory_of_gas = (1.0 + 0.95) / (1.0 - 0.95)  # T, of the gas alone
+    point = _with_total_momentum(memory_of_gas, scene, state)
     assert point == pytest.approx(autocorrelation_time(energy), rel=0.08)
 
 
@@ -192,8 +197,8 @@ def test_the_share_of_spins_is_that_of_the_settings(share):
 # ------------------------------------------------------------------------ verdicts
 
 
-def test_data_may_veto_and_never_vouch():
-    enough, little = Evidence(20, 20), Evidence(20, 20, memories=11.9)
+def test_data_may_refute_a_steady_state_but_not_prove_it():
+    enough, little = SampleSize(20, 20), SampleSize(20, 20, memories=11.9)
     short = enough._replace(times=5.9)
     assert enough.verdict(True) == YES and enough.verdict(False) == NO
     assert little.verdict(True) == little.verdict(False) == UNKNOWN
@@ -202,37 +207,42 @@ def test_data_may_veto_and_never_vouch():
         assert [verdict(steady, lacking) for steady in (YES, NO)] == [UNKNOWN, NO]
 
 
-@pytest.mark.parametrize("numbers", LEAST._asdict())
+@pytest.mark.parametrize("numbers", MINIMUM_SAMPLE_SIZE._asdict())
 def test_each_number_that_is_too_small_is_too_little_evidence(numbers):
-    assert not LEAST._replace(**{numbers: 0.99 * getattr(LEAST, numbers)}).suffices()
-    assert not LEAST._replace(**{numbers: math.nan}).suffices()
-    assert LEAST.suffices()
+    assert not MINIMUM_SAMPLE_SIZE._replace(
+        **{numbers: 0.99 * getattr(MINIMUM_SAMPLE_SIZE, numbers)}
+    ).suffices()
+    assert not MINIMUM_SAMPLE_SIZE._replace(**{numbers: math.nan}).suffices()
+    assert MINIMUM_SAMPLE_SIZE.suffices()
 
 
-def test_what_is_lacking_is_said_in_words():
-    evidence = Evidence(collisions=9.7, samples=12, memories=3.2, phases=4)
-    assert lack_of(evidence, LEAST) == (
+def test_lacking_evidence_is_stated_in_words():
+    evidence = SampleSize(collisions=9.7, samples=12, memories=3.2, phases=4)
+    assert describe_shortfall(evidence, MINIMUM_SAMPLE_SIZE) == (
         "9 collisions per particle, 10 needed; window of 3 memories, 12 needed; "
         "4 phases of the drive, 16 needed"
     )
-    assert lack_of(LEAST, LEAST) == ""
+    assert describe_shortfall(MINIMUM_SAMPLE_SIZE, MINIMUM_SAMPLE_SIZE) == ""
 
 
+PASSIVE_EFFECTS = {"contact_averages": {}}
+"""Effects that change no run; with them, gases have the kernels of other tests."""
 LONG = {"kind": "steady", "equilibrate": 500.0, "measure": 1500.0, "sample_every": 1.0}
 
 
-def measured(effects, r, beta, timing=None, particles=40, side=25.0, number=1, **more):
+def measured(effects, r, beta, schedule_changes=None, particles=40, side=25.0, seed=1, **changes):
     """The variables of a point."""
-    _, settings = scene_of(effects, r, beta, particles, side, **more)
-    settings |= {"schedule": LONG | (timing or {})}
-    schedule.check(settings)
+    passive = KERNELS["heated"]["effects"] if "thermostat" in effects else PASSIVE_EFFECTS
+    _, settings = scene_of(passive | effects, r, beta, particles, side, **changes)
+    settings |= {"schedule": LONG | (schedule_changes or {})}
+    protocols.check_experiment(settings)
     scene, _ = begin(settings, r, beta)
-    return steady.run(scene, settings, number, roughgas.simulation.recorder.Recorder())
+    return steady.run(scene, settings, seed, Simulation())
 
 
 @pytest.mark.parametrize(("beta", "q"), [(-0.999999, 0.5), (-0.99999, 0.5), (1.0, 1e-6)])
 def test_spins_that_hardly_relax_are_no_steady_state(beta, q):
-    """Their energy drifts by less than any noise; by theory they need 1e5 T or more."""
+    """Their energy drifts by less than the noise; by theory they relax within 1e5 T or more."""
     effects = {"spin": {"inertia": q}} | kicks(1.0)
     point = measured(effects, 0.9, beta, spin_temperature=1.0)
     assert point["memory_of_R"] > 1e5 and point["R"] > 0.1
@@ -241,7 +251,7 @@ def test_spins_that_hardly_relax_are_no_steady_state(beta, q):
 
 
 def test_spins_that_no_contact_changes_leave_R_unknown():
-    """It is what the start made it; the translational energy is as steady as any."""
+    """R depends on the initial spins; the translational energy is steady."""
     point = measured(kicks(1.0), 0.9, -1.0, spin_temperature=1.0)
     assert point["equilibrated"] == point["E_trans_trusted"] == YES
     assert point["R_ci95_trusted"] == UNKNOWN and point["memory_of_R"] == math.inf
@@ -253,10 +263,10 @@ def test_a_smooth_gas_has_an_R_of_zero_that_is_trusted():
 
 
 @pytest.mark.parametrize(("memories", "expected"), [(6.0, UNKNOWN), (25.0, YES)])
-def test_the_length_that_theory_asks_for_decides(memories, expected):
-    """Whatever the run says of itself: 20 seeds of a sheared gas, not one of them too short."""
+def test_the_length_in_predicted_memories_decides(memories, expected):
+    """At any scatter of the run: 20 seeds of a sheared gas have the same verdict if too short."""
     length = {"measure": round(19.0 * memories)}
-    runs = [measured({"shear": SHEAR}, 0.9, 0.0, length, number=seed) for seed in range(20)]
+    runs = [measured({"shear": SHEAR}, 0.9, 0.0, length, seed=seed) for seed in range(20)]
     flags = [run["R_ci95_trusted"] for run in runs]
     assert (flags.count(YES) >= 17) if expected == YES else set(flags) == {UNKNOWN}
     assert [run["memory_of_R"] for run in runs] == pytest.approx([19.0] * 20, rel=0.35)
@@ -270,22 +280,23 @@ def test_a_bed_needs_twice_as_many_memories():
 
 
 def test_means_of_energies_need_a_window_of_their_own_length():
-    """R is known after 12 of its memories, its energies after 96 of their e-folds."""
+    """R is trusted after 12 of its memories, energies after 96 of their relaxation times."""
     for measure, expected in ((1000.0, UNKNOWN), (4000.0, YES)):
         point = measured({"shear": SHEAR}, 0.9, 0.0, {"measure": measure})
         assert point["R_ci95_trusted"] == YES
         assert point["E_trans_trusted"] == point["E_rot_trusted"] == expected
 
 
-def test_a_continued_run_has_waited_since_its_first_state(tmp_path):
-    """The 1000 T of the run before count as its wait, where it goes on to the last bit."""
-    given = dict(particles=40, box=[25, 25], effects=SPIN | {"shear": SHEAR}, progress=False)
+def test_a_continued_run_counts_the_equilibration_of_its_first_part(tmp_path):
+    """The 1000 T of the previous run count as equilibration of an exact continuation."""
+    arguments = dict(particles=40, box=[25, 25], progress=False)
+    arguments["effects"] = SPIN | {"shear": SHEAR} | PASSIVE_EFFECTS
     first = roughgas.simulate(
-        r=0.9, beta=0.0, seed=1, keep_state=True, schedule=LONG | {"measure": 500.0}, **given
+        r=0.9, beta=0.0, seed=1, keep_state=True, schedule=LONG | {"measure": 500.0}, **arguments
     )
     again = {"equilibrate": 0.0, "measure": 400.0}
-    exact = roughgas.simulate(r=0.9, beta=0.0, initial=first, schedule=LONG | again, **given)
-    fresh = roughgas.simulate(r=0.9, beta=0.0, seed=1, schedule=LONG | again, **given)
+    exact = roughgas.simulate(r=0.9, beta=0.0, initial=first, schedule=LONG | again, **arguments)
+    fresh = roughgas.simulate(r=0.9, beta=0.0, seed=1, schedule=LONG | again, **arguments)
     assert exact.attrs["initial_exact"] == 1
     assert int(exact.equilibrated) == YES and int(fresh.equilibrated) == UNKNOWN
 
@@ -294,7 +305,7 @@ NOISE = {"langevin": {"power": 1, "interval": 0.5}}
 
 
 @pytest.mark.parametrize(
-    ("more", "legal"),
+    ("walls", "legal"),
     [
         ({}, False),
         ({"left_wall": {}, "right_wall": {}}, False),
@@ -303,10 +314,10 @@ NOISE = {"langevin": {"power": 1, "interval": 0.5}}
         ({"left_wall": {}, "right_wall": {}, "bottom_wall": {}, "lid": {}}, True),
     ],
 )
-def test_noise_without_drag_needs_something_that_damps_the_momentum(more, legal):
-    settings = {"particles": 10, "box": [25, 25], "effects": SPIN | NOISE | more, "schedule": LONG}
+def test_noise_without_drag_needs_walls_that_damp_the_momentum(walls, legal):
+    settings = {"particles": 10, "box": [25, 25], "effects": SPIN | NOISE | walls, "schedule": LONG}
     if legal:
-        schedule.check(settings)
+        protocols.check_experiment(settings)
         return
-    with pytest.raises(InputError, match=r"langevin\.power = 1: must be 0 without a drag"):
-        schedule.check(settings)
+    with pytest.raises(InputError, match=r"langevin\.power = 1.0: must be 0 without a drag"):
+        protocols.check_experiment(settings)

@@ -1,17 +1,14 @@
-"""Schedules and protocols."""
+"""Protocols of steady and cooling gases."""
 
 import numpy as np
 import pytest
 from brute_force import begin, run, settings
+from raw import build, cooling, expected_collisions, packing, steady
 
 from roughgas import theory
 from roughgas.effects.contacts import STRESSES, columns_of_pairs
-from roughgas.effects.species import packing
-from roughgas.scene import build
-from roughgas.simulation import cooling, steady
 from roughgas.simulation.energies import Energies
-from roughgas.simulation.point import effort
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.simulation import Simulation
 
 BED = settings("bed", 40, [12.5, "open"]) | {
     "schedule": {
@@ -34,10 +31,10 @@ COOLING = settings("gas", 40, [50, 50]) | {
 }
 
 
-def test_a_steady_bed():
-    """What R is, test_small_scale.py holds against theory, as that of a cooling gas."""
+def test_a_steady_bed_is_measured_from_a_full_period_on():
+    """test_small_scale.py compares R with theory, here and of a cooling gas."""
     scene, _ = begin(BED, 0.9, 0.0)
-    measured = steady.run(scene, BED, 1, Recorder())
+    measured = steady.run(scene, BED, 1, Simulation())
     assert measured["equilibrated"]
     assert measured["measured_from"] >= 100.25
     assert measured["measured_from"] == round(measured["measured_from"])  # whole periods
@@ -46,46 +43,52 @@ def test_a_steady_bed():
 
 
 @pytest.mark.parametrize("name", ["bed", "sheared"])
-def test_how_many_collisions_a_point_makes_is_known_before(name):
-    """At r = 0.8 a bed makes more of them than at 0.99, a sheared gas fewer: by a third."""
+def test_the_number_of_collisions_of_a_point_is_predicted(name):
+    """At r = 0.8 a bed makes a third more collisions than at 0.99, a sheared gas fewer."""
     box = [12.5, "open"] if name == "bed" else [25, 25]
     experiment = settings(name, 40, box) | {"schedule": BED["schedule"]}
-    made, expected = [], []
+    counted, expected = [], []
     for r in (0.8, 0.99):
-        recorder = Recorder()
-        steady.run(begin(experiment, r, 0.0)[0], experiment, 1, recorder)
-        made.append(recorder.collisions)
-        expected.append(effort(experiment, r, 0.0))
-    assert max(made) > 1.33 * min(made)
-    assert np.argmax(made) == np.argmax(expected) == (name == "sheared")
-    assert expected == pytest.approx(made, rel=0.5)
+        simulation = Simulation()
+        steady.run(begin(experiment, r, 0.0)[0], experiment, 1, simulation)
+        counted.append(simulation.costs.collisions)
+        expected.append(expected_collisions(experiment, r, 0.0))
+    assert max(counted) > 1.33 * min(counted)
+    assert np.argmax(counted) == np.argmax(expected) == (name == "sheared")
+    assert expected == pytest.approx(counted, rel=0.5)
 
 
 def test_a_bed_that_is_hardly_shaken_makes_few_collisions():
-    """The square of its floor's speed is too small for a number."""
+    """The square of its floor's speed underflows."""
     floor = BED["effects"]["floor"] | {"amplitude": 1e-200}
-    assert effort(BED | {"effects": BED["effects"] | {"floor": floor}}, 0.9, 0.0) == 0.0
+    assert (
+        expected_collisions(BED | {"effects": BED["effects"] | {"floor": floor}}, 0.9, 0.0) == 0.0
+    )
 
 
 def test_a_start_that_would_leave_less_than_half_is_not_taken():
-    """A small step just after the middle of the run, which has no time before the measurement."""
+    """A small step just after the middle of a run without equilibration."""
     series = 1.0 + 0.001 * np.random.default_rng(1).standard_normal(104)
     series[:54] += 0.005
     energies = Energies(series, None)
-    assert steady._start(energies, 0, 104, 1) == (0, False)
-    assert steady._start(energies, 40, 64, 1) == (54, True)
+    assert steady._measurement_start(energies, 0, 104, 1) == (0, False)
+    assert steady._measurement_start(energies, 40, 64, 1) == (54, True)
 
 
-def test_a_bed_in_twenty_phases_of_its_floor_and_in_four():
-    """R depends on where it is sampled, R over collisions does not; the series have one length."""
+def test_R_over_collisions_does_not_depend_on_the_phases_of_samples():
+    """R depends on the phases of samples; R over collisions, and the length of series, do not."""
     measured = []
     for every in (0.05, 0.25):
         bed = BED | {"schedule": BED["schedule"] | {"equilibrate": 100, "sample_every": every}}
-        measured.append(steady.run(begin(bed, 0.8, 0.0)[0], bed, 2, Recorder()))
+        measured.append(steady.run(begin(bed, 0.8, 0.0)[0], bed, 2, Simulation()))
     twenty, four = measured
-    for found in measured:
-        assert len(found["R_series"]) == len(found["time"]) == 4 * (400 - found["measured_from"])
-        assert found["R"] == pytest.approx(found["R_series"].mean(), rel=1e-12)
+    for variables in measured:
+        assert (
+            len(variables["R_series"])
+            == len(variables["time"])
+            == 4 * (400 - variables["measured_from"])
+        )
+        assert variables["R"] == pytest.approx(variables["R_series"].mean(), rel=1e-12)
     assert twenty["R_collisional"] == pytest.approx(four["R_collisional"], rel=1e-6)
     assert twenty["contact_correlation"] == pytest.approx(four["contact_correlation"], rel=1e-6)
     assert twenty["R"] > four["R"] + 0.002  # by 0.0050(1) in the bed of the paper
@@ -93,9 +96,9 @@ def test_a_bed_in_twenty_phases_of_its_floor_and_in_four():
     assert abs(twenty["R_collisional"] - expected) < 0.01 < twenty["R"] - expected
 
 
-def test_a_cooling_gas():
+def test_a_cooling_gas_averages_over_its_replicas():
     scene, _ = begin(COOLING, 0.9, 0.0)
-    measured = cooling.run(scene, COOLING, 1, Recorder())
+    measured = cooling.run(scene, COOLING, 1, Simulation())
     assert measured["R_replica"].shape == (8,)
     assert measured["R"] == pytest.approx(measured["R_replica"].mean())
     assert np.all(np.diff(measured["E_trans_series"]) < 0.0)
@@ -105,16 +108,19 @@ def test_a_cooling_gas():
 
 
 def heated(kernel, **thermostat):
+    """Settings of a steady heated gas."""
     steady = {"kind": "steady", "equilibrate": 40, "measure": 960, "sample_every": 0.5}
     return settings(kernel, 40, [50, 50], thermostat=thermostat) | {"schedule": steady}
 
 
-def test_a_steady_heated_gas():
-    """R is the rate equations' within four of its errors, .0056 by the scatter of 40 seeds, whose
-    mean is .0006(9) below; no period is needed."""
+def test_a_steady_heated_gas_has_R_of_the_rate_equations():
+    """Within four of its errors, .0056 by the scatter of 40 seeds, whose mean is .0006(9) below.
+
+    No period is needed.
+    """
     experiment = heated("heated", spin_share=0.5)
     scene, _ = begin(experiment, 0.9, 0.2)
-    measured = steady.run(scene, experiment, 1, Recorder())
+    measured = steady.run(scene, experiment, 1, Simulation())
     assert measured["equilibrated"]
     expected = theory.stationary_ratio(0.9, 0.2, 2, 0.5, 0.5)
     assert abs(measured["R"] - expected) < 4.0 * 0.0056 and measured["R_stderr"] < 2.0 * 0.0056
@@ -124,11 +130,11 @@ def test_a_steady_heated_gas():
 
 
 def test_a_cooling_gas_without_spin_follows_haff():
-    """In collisions per particle its energy decays exponentially, by (1 - r^2)/2 of it each."""
+    """Its energy decays exponentially, by a share (1 - r^2)/2 per collision per particle."""
     experiment = COOLING | settings("smooth", 40, [50, 50])
     scene, _ = begin(experiment, 0.95, -1.0)
-    assert cooling.transient_length(scene, 8) == cooling.TRANSIENT[0]
-    measured = cooling.run(scene, experiment, 1, Recorder())
+    assert cooling.transient_length(scene, 8) == cooling.SHORTEST_TRANSIENT
+    measured = cooling.run(scene, experiment, 1, Simulation())
     assert not [name for name in measured if name.startswith("R")] and "E_rot" not in measured
     assert measured["measured_from"] == 10.0 and measured["equilibrated"]
     E, n = measured["E_trans_series"], measured["collisions_per_particle"]
@@ -145,7 +151,7 @@ def test_the_transient_is_that_of_the_slowest_ratio():
     scene = build(experiment, 0.9, 0.0)
     gas = theory.mixture(SPECIES, 0.9, 0.0)
     rate = theory.mixture_relaxation_rate(gas, 160 * np.pi * 2.5 / 1e4)
-    assert cooling.rate_of(scene, experiment) == pytest.approx(rate, rel=1e-9)
+    assert cooling.R_relaxation_rate(scene, experiment) == pytest.approx(rate, rel=1e-9)
     assert rate < theory.relaxation_rate(0.9, 0.0)
     assert cooling.transient_length(scene, 8.0, experiment) == pytest.approx(8 / rate)
 

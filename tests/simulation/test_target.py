@@ -1,94 +1,83 @@
-"""Runs that go on to a target error, and their progress."""
+"""Runs to a target error, and the progress of runs."""
 
 import io
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from brute_force import begin, settings
+from raw import build, cooling, run_point, steady, typed
 
 from roughgas.base import InputError
-from roughgas.scene import build
-from roughgas.simulation import recorder, schedule
-from roughgas.simulation.point import run_point
-from roughgas.simulation.progress import Bar, Progress
+from roughgas.simulation import error_target, progress
+from roughgas.simulation.progress import ProgressBar, RunProgress
 from roughgas.statistics.errors import NO, UNKNOWN, YES
 
 STEADY = {"kind": "steady", "equilibrate": 30.5, "measure": 50, "sample_every": 0.3}
 COOLING = {"kind": "cooling", "replicas": 4, "thermalise": 20, "relaxation_times": 8}
 COOLING |= {"plateau": 30, "sample_every": 1}
 SHEARED = settings("sheared", 40, [25, 25]) | {"schedule": STEADY}
-FREE = settings("gas", 40, [50, 50]) | {"schedule": COOLING}
-OF_TARGET = {"target_met", "target_blocks"}
+COOLING_GAS = settings("gas", 40, [50, 50]) | {"schedule": COOLING}
+TARGET_VARIABLES = {"target_met", "target_blocks"}
 
 
-def found(experiment, beta=0.0, **changes):
-    chosen = experiment | {"schedule": experiment["schedule"] | changes}
-    return run_point(begin(chosen, 0.9, beta)[0], chosen, 1).variables
+def variables_of(experiment, beta=0.0, **changes):
+    """The variables of a point with changes of its schedule."""
+    changed = experiment | {"schedule": experiment["schedule"] | changes}
+    return run_point(begin(changed, 0.9, beta)[0], changed, 1).variables
 
 
-def assert_same(one, other):
-    """Of all but the target, and CPU times, to the last bit."""
-    assert one.keys() - OF_TARGET == other.keys() - OF_TARGET
-    for name in one.keys() - OF_TARGET - {"kernel_seconds"}:
-        assert np.array_equal(one[name], other[name], equal_nan=np.asarray(one[name]).dtype == "f8")
+def assert_same_variables(first, second):
+    """Assert the same bits, except in variables of the target and CPU times."""
+    assert first.keys() - TARGET_VARIABLES == second.keys() - TARGET_VARIABLES
+    for name in first.keys() - TARGET_VARIABLES - {"kernel_seconds"}:
+        assert np.array_equal(
+            first[name], second[name], equal_nan=np.asarray(first[name]).dtype == "f8"
+        )
 
 
 @pytest.mark.parametrize(
-    ("experiment", "key", "error"), [(SHEARED, "measure", 0.012), (FREE, "replicas", 0.006)]
+    ("experiment", "key", "error"), [(SHEARED, "measure", 0.012), (COOLING_GAS, "replicas", 0.006)]
 )
-def test_a_run_to_a_target_has_the_bits_of_one_that_was_asked_to_be_as_long(experiment, key, error):
+def test_a_run_to_a_target_has_the_bits_of_a_run_of_the_same_length(experiment, key, error):
     watching = experiment | {"observables": {"cumulants": {"every": 7}}, "keep_state": True}
-    aimed = found(watching, target_stderr=error)
+    aimed = variables_of(watching, target_stderr=error)
     blocks = aimed["target_blocks"]
     assert blocks > 3 and aimed["target_met"] == YES and aimed["R_stderr"] <= error
-    assert_same(aimed, found(watching, **{key: blocks * experiment["schedule"][key]}))
+    assert_same_variables(
+        aimed, variables_of(watching, **{key: blocks * experiment["schedule"][key]})
+    )
 
 
-@pytest.mark.parametrize("experiment", [SHEARED, FREE])
-def test_what_is_not_reached_is_said(experiment, monkeypatch):
-    monkeypatch.setattr(recorder, "MOST_BLOCKS", 3)
-    aimed = found(experiment, target_stderr=1e-5)
+@pytest.mark.parametrize("experiment", [SHEARED, COOLING_GAS])
+def test_a_missed_target_is_reported(experiment, monkeypatch):
+    monkeypatch.setattr(error_target, "BLOCK_LIMIT", 3)
+    aimed = variables_of(experiment, target_stderr=1e-5)
     assert aimed["target_met"] == NO and aimed["target_blocks"] == 3
     assert aimed["R_stderr"] > 1e-5
 
 
 def test_a_run_keeps_no_more_samples_than_any_other(monkeypatch):
-    monkeypatch.setattr(recorder, "MOST_SAMPLES", 700)  # one block has some 268
-    assert found(SHEARED, target_stderr=1e-5)["target_blocks"] == 2
+    monkeypatch.setattr(error_target, "SAMPLE_LIMIT", 700)  # a block has some 268
+    assert variables_of(SHEARED, target_stderr=1e-5)["target_blocks"] == 2
 
 
-def test_of_an_r_that_never_changes_it_is_not_known(monkeypatch):
-    """Smooth disks do not spin up: the error is 0, and rests on nothing."""
-    aimed = found(SHEARED, beta=-1.0, measure=100, target_stderr=0.01)
+def test_a_target_is_unknown_if_R_never_changes(monkeypatch):
+    """Smooth disks never spin: the error of R is 0 without any evidence."""
+    aimed = variables_of(SHEARED, beta=-1.0, measure=100, target_stderr=0.01)
     assert aimed["R"] == aimed["R_stderr"] == 0.0
     assert aimed["target_met"] == UNKNOWN and aimed["target_blocks"] == 1
 
 
-def test_states_to_begin_in_are_no_target_of_replicas():
-    scene, aimed = begin(FREE, 0.9, 0.0)[0], COOLING | {"target_stderr": 0.01}
+def test_initial_states_exclude_a_target_of_replicas():
+    scene, aimed = begin(COOLING_GAS, 0.9, 0.0)[0], COOLING | {"target_stderr": 0.01}
     with pytest.raises(InputError, match=r"target_stderr = 0\.01: must not stand beside initial"):
-        schedule.of(FREE).run(scene, FREE | {"schedule": aimed}, 1, None, [None] * 4)
-
-
-@pytest.mark.slow
-def test_intervals_of_runs_that_ended_at_a_target_still_hold_the_truth():
-    """To stop where an estimated error is small costs some of the coverage."""
-    scene = begin(SHEARED, 0.9, 0.0)[0]
-    truth = run_point(scene, SHEARED | {"schedule": STEADY | {"measure": 100_000}}, 1000).variables[
-        "R"
-    ]
-    aimed = SHEARED | {"schedule": STEADY | {"target_stderr": 0.008}}
-    inside, count = 0, 300
-    for seed in range(count):
-        one = run_point(scene, aimed, seed).variables
-        assert one["target_met"] == YES
-        inside += abs(one["R"] - truth) <= one["R_ci95"]
-    assert inside / count > 0.9
+        cooling.run(scene, COOLING_GAS | {"schedule": aimed}, 1, None, [None] * 4)
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal; `shown` is what each bar in turn looked like."""
+    """A stream that claims to be a terminal; `shown` has the successive bars."""
 
     def isatty(self):
         return True
@@ -100,48 +89,67 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(autouse=True)
 def every_step_is_shown(monkeypatch):
-    monkeypatch.setattr("roughgas.simulation.progress.SECONDS_BETWEEN", 0.0)
+    monkeypatch.setattr(progress, "BAR_INTERVAL", 0.0)
+
+
+def replica_of(number):
+    """A stand-in for a replica at its start."""
+    return SimpleNamespace(number=number, time=0.0, collisions_before_cooling=0, collisions=0)
+
+
+def batch_after(collisions):
+    """A stand-in for a batch whose last sample is after a number of collisions."""
+    return SimpleNamespace(rows={"time": [123.0], "collisions": [collisions]})
 
 
 def test_a_cooling_gas_is_followed_through_its_replicas():
-    """So many collisions per particle: 20 to thermalise, the transient, 30 on the plateau."""
+    """In collisions per particle: 20 to thermalise, the transient, 30 on the plateau."""
     stream = Terminal()
-    with Progress("cooling", build(FREE, 1.0, 1.0), FREE, stream=stream) as progress:
+    with RunProgress(
+        "cooling", build(COOLING_GAS, 1.0, 1.0), typed(COOLING_GAS), stream=stream
+    ) as run_progress:
         total = int(stream.shown[0].split(" of ")[1].split()[0])
         replica = total / 4
-        for _ in range(4):
-            for part in (0.5, 1.0):
-                progress(123.0, round(part * replica * 20))
-    shown = [int(one.split("| ")[1].split()[0]) for one in stream.shown[1:]]
-    assert shown == pytest.approx([total * part / 8 for part in range(1, 9)], abs=1)
+        for number in range(4):
+            gas = replica_of(number)
+            run_progress.begin(gas, None, {})
+            for share in (0.5, 1.0):
+                run_progress.take(gas, None, batch_after(round(share * replica * 20)))
+    shown = [int(bar.split("| ")[1].split()[0]) for bar in stream.shown[2:]]
+    assert shown == pytest.approx([total * eighth / 8 for eighth in range(1, 9)], abs=1)
     assert stream.shown[-1].startswith("cooling: 100%|")
 
 
-def test_progress_is_silent_elsewhere_of_what_is_soon_over():
+def test_short_work_shows_no_progress_without_a_terminal():
     stream = io.StringIO()
-    with Progress("cooling", build(FREE, 0.9, 0.0), FREE, stream=stream) as progress:
-        progress(1.0, 1)
+    with RunProgress(
+        "cooling", build(COOLING_GAS, 0.9, 0.0), typed(COOLING_GAS), stream=stream
+    ) as run_progress:
+        run_progress.begin(replica_of(0), None, {})
+        run_progress.take(replica_of(0), None, batch_after(1))
     assert stream.getvalue() == ""
 
 
-def test_parts_that_take_unequal_times(monkeypatch):
-    """Two of nine points are a tenth of the work, in a pipe and on a terminal."""
+def test_the_time_left_follows_the_share_of_the_work(monkeypatch):
+    """Two of nine points are a tenth of the work here; in a pipe and on a terminal."""
     pipe, terminal = io.StringIO(), Terminal()
     clock = iter([0, 11, 11])
-    monkeypatch.setattr("roughgas.simulation.progress.time.monotonic", lambda: next(clock))
-    with Bar("task", 9, "points", pipe) as bar:
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress, "FIRST_LINE_AFTER", 10.0)
+    with ProgressBar("task", 9, "points", pipe) as bar:
         bar.reach(2, share=0.1)
     assert pipe.getvalue() == "task: 10 %, 2 of 9 points, 11 s so far, about 99 s left\n"
-    with Bar("task", 9, "points", terminal) as bar:
+    with ProgressBar("task", 9, "points", terminal) as bar:
         bar.reach(2, share=0.1)
     assert re.match(r"task:  10%\|[^|]*\| 2 of 9 points, ", terminal.shown[-1])
 
 
-def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
+def test_a_pipe_gets_lines_about_long_work(monkeypatch):
     clock = iter([0, 5, 11, 60, 72])
-    monkeypatch.setattr("roughgas.simulation.progress.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress, "FIRST_LINE_AFTER", 10.0)
     stream = io.StringIO()
-    with Bar("task", None, "points", stream) as bar:
+    with ProgressBar("task", None, "points", stream) as bar:
         for done in range(1, 5):
             bar.reach(done, "r = 0.9", total=9)
     assert stream.getvalue().splitlines() == [
@@ -153,9 +161,11 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
 @pytest.mark.parametrize("trusted", [YES, NO, UNKNOWN])
 @pytest.mark.parametrize("stderr", [0.005, 0.02])
 def test_a_target_is_met_where_R_is_trusted(trusted, stderr):
-    """Whatever else ends the run: enough replicas, or the most blocks."""
+    """An untrusted R with a small error leaves it unknown whether the target is met."""
     point = {"R_stderr": stderr, "R_ci95_trusted": trusted, "measured_collisions": 100.0}
-    timing = {"target_stderr": 0.01, "measure": 1e5, "sample_every": 0.01}
-    found = recorder.until_met(timing, "measure", lambda longer: (point, True))
-    small = YES if trusted == YES else UNKNOWN
-    assert found["target_met"] == (small if stderr <= 0.01 else NO)
+    timing = steady.SteadySettings(
+        target_stderr=0.01, equilibrate=0.0, measure=1e5, sample_every=0.01
+    )
+    variables = error_target.prolonged_until_met(timing, "measure", lambda longer: (point, True))
+    met = YES if trusted == YES else UNKNOWN
+    assert variables["target_met"] == (met if stderr <= 0.01 else NO)

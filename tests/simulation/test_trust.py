@@ -1,20 +1,20 @@
-"""Of the intervals that points call trusted, as many hold the truth as say so.
+"""Trusted confidence intervals of points hold the true R as often as they state.
 
-`python -m benchmarks.coverage` asks the same of more scenes, and of more runs of each.
+`python -m benchmarks.coverage` tests more scenes, with more runs of each.
 """
 
 import math
 
 import numpy as np
 import pytest
+from raw import build, run_point
 
-from roughgas.scene import build
-from roughgas.simulation.point import run_point
-from roughgas.statistics.errors import UNKNOWN, YES, gaussian_sigmas
+from roughgas.statistics.errors import UNKNOWN, YES
+from roughgas.statistics.student import wallace_sigmas
 
 SPIN = {"spin": {"inertia": 0.5}}
-# Scene, r, beta, particles, side of the box; memory of R in T, and R of runs of 10^6 T together,
-# known to a tenth of the least standard error here.
+# Scene, r, beta, particles, side of the box; memory of R in T, and R from runs of 10^6 T in total,
+# with a tenth of the smallest standard error here.
 GASES = {
     "sheared": ({"shear": {"velocity": 2}}, 0.9, 0.0, 40, 25, 19.0, 0.22497),
     "heated": (
@@ -23,38 +23,40 @@ GASES = {
     ),
 }
 SEEDS, LENGTHS = 60, (6, 9, 16, 30, 60)  # memories
-LARGEST = 0.07  # share of misses
-FAR = 5.0  # sigma
+MISS_SHARE = 0.07  # largest share of misses
+LARGEST_DEVIATION = 5.0  # sigma
 
 
-def points(name, memories, first, **more):
-    """The variables of runs of a gas, of so many memories each."""
+def points(name, memories, first_seed, **schedule_changes):
+    """Variables of runs of a gas, each of this length in memories."""
     effects, r, beta, particles, side, memory, _ = GASES[name]
-    timing = {"kind": "steady", "equilibrate": 300.0, "sample_every": 1.0, **more}
+    timing = {"kind": "steady", "equilibrate": 300.0, "sample_every": 1.0, **schedule_changes}
     timing["measure"] = float(round(memories * memory))
     box = [side, side]
     settings = {"particles": particles, "box": box, "effects": SPIN | effects, "schedule": timing}
     scene = build(settings, r, beta)
-    return [run_point(scene, settings, first + seed).variables for seed in range(SEEDS)]
+    return [run_point(scene, settings, first_seed + seed).variables for seed in range(SEEDS)]
 
 
 def missed(point, truth):
+    """Whether the confidence interval misses the true R."""
     return abs(point["R"] - truth) > point["R_ci95"]
 
 
 def sigmas(point, truth):
-    return abs(float(gaussian_sigmas((point["R"] - truth) / point["R_stderr"], point["R_dof"])))
+    """The deviation of R from the true value, in sigma of a Gaussian."""
+    return abs(float(wallace_sigmas((point["R"] - truth) / point["R_stderr"], point["R_dof"])))
 
 
-def most(runs):
-    """Misses that are allowed in so many runs: three binomial errors above the largest share."""
-    return LARGEST * runs + 3.0 * math.sqrt(LARGEST * (1.0 - LARGEST) * runs)
+def allowed_misses(runs):
+    """The allowed number of misses: three binomial errors above the largest share."""
+    return MISS_SHARE * runs + 3.0 * math.sqrt(MISS_SHARE * (1.0 - MISS_SHARE) * runs)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", GASES)
 def test_trusted_intervals_hold_the_truth(name):
-    """Runs of all lengths: more misses than are allowed by chance once in 700 cases."""
+    """Runs of all lengths; by chance, the number of misses exceeds the limit once in 700 cases."""
     truth, trusted = GASES[name][-1], []
     for number, memories in enumerate(LENGTHS):
         runs = points(name, memories, 1000 * (number + 1))
@@ -65,17 +67,17 @@ def test_trusted_intervals_hold_the_truth(name):
         if memories >= 20:
             assert np.mean(flags == YES) >= 0.9
     assert len(trusted) > 2 * SEEDS
-    assert sum(missed(run, truth) for run in trusted) <= most(len(trusted))
-    assert max(sigmas(run, truth) for run in trusted) < FAR
+    assert sum(missed(run, truth) for run in trusted) <= allowed_misses(len(trusted))
+    assert max(sigmas(run, truth) for run in trusted) < LARGEST_DEVIATION
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "target"), [("sheared", 0.01), ("heated", 0.02)])
 def test_runs_that_met_their_target_hold_the_truth(name, target):
-    """Though they end where the error seems small enough."""
+    """Although they end at a small estimated error."""
     truth = GASES[name][-1]
     runs = points(name, 4.0, 10_000, target_stderr=target)
     met = [run for run in runs if run["target_met"] == YES]
     assert len(met) > 0.9 * SEEDS
-    assert sum(missed(run, truth) for run in met) <= most(len(met))
-    assert max(sigmas(run, truth) for run in met) < FAR
+    assert sum(missed(run, truth) for run in met) <= allowed_misses(len(met))
+    assert max(sigmas(run, truth) for run in met) < LARGEST_DEVIATION

@@ -1,5 +1,5 @@
-"""A real Slurm on the loopback interface: a controller and two nodes of one core, all of them
-processes of this machine that live in one folder."""
+"""A real Slurm on the loopback interface: a controller and two single-core nodes, all of them
+processes on this machine, with all files in a temporary folder."""
 
 import getpass
 import os
@@ -15,7 +15,7 @@ import psutil
 
 NODES = ("n1", "n2")
 CLIENTS = ("sbatch", "srun", "scancel", "squeue", "scontrol", "sinfo", "sacct", "sacctmgr")
-MARK = "SLURM_TEST_NODE"  # in the environment of a node's processes
+NODE_VARIABLE = "SLURM_TEST_NODE"  # environment variable of a node's processes
 CONFIGURATION = """\
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -51,10 +51,10 @@ PartitionName=debug Nodes=ALL Default=YES State=UP
 
 
 class Cluster:
-    """Slurm, from `start` to `stop`, which leaves nothing behind."""
+    """A Slurm cluster that runs from `start` to `stop`, and leaves no files or processes."""
 
     def __init__(self):
-        self.folder = Path(tempfile.mkdtemp(prefix="slurm"))  # short, as paths of sockets must be
+        self.folder = Path(tempfile.mkdtemp(prefix="slurm"))  # short: paths of sockets are limited
         self.settings = self.folder / "slurm.conf"
         self.environment = os.environ | {
             "PATH": f"{self.folder}/bin{os.pathsep}{os.environ['PATH']}"
@@ -62,7 +62,7 @@ class Cluster:
         self._daemons = []
 
     def start(self):
-        """Start all daemons; returns when both nodes wait for work."""
+        """Start all daemons; return when both nodes are idle."""
         self._write_settings()
         self._write_clients()
         munge = self.folder / "munge"
@@ -78,15 +78,17 @@ class Cluster:
         until(lambda: all(self.state(node) == "idle" for node in NODES), "both nodes are idle")
 
     def start_node(self, node):
-        self._daemon("slurmd", "-D", "-N", node, "-f", self.settings, **{MARK: self._mark(node)})
+        self._daemon(
+            "slurmd", "-D", "-N", node, "-f", self.settings, **{NODE_VARIABLE: self._mark(node)}
+        )
 
     def kill_node(self, node):
-        """As a power cut does: its daemon, and all that runs there, at once."""
+        """Kill the daemon and all processes of a node, as a power cut does."""
         while processes := self._processes(node):
             for process in processes:
                 with suppress(psutil.NoSuchProcess):
                     process.kill()
-            time.sleep(0.1)  # for what was just starting
+            time.sleep(0.1)  # for processes that are just starting
 
     def stop(self):
         """End all daemons and jobs, and remove the folder."""
@@ -98,18 +100,18 @@ class Cluster:
         shutil.rmtree(self.folder)
 
     def __call__(self, client, *arguments):
-        """What one of Slurm's commands prints."""
-        done = subprocess.run(
+        """Run a command of Slurm, and return its output."""
+        process = subprocess.run(
             [client, *arguments], env=self.environment, capture_output=True, text=True
         )
-        return done.stdout.strip()
+        return process.stdout.strip()
 
     def state(self, node):
-        """Of a node: idle, allocated, down, ..."""
+        """Return the state of a node: idle, allocated, down, ..."""
         return self("sinfo", "--noheader", "--nodes", node, "--format=%T").rstrip("*")
 
     def running(self):
-        """(job, node) of all that is running."""
+        """Return (job, node) of all running jobs."""
         rows = self("squeue", "--noheader", "--states=R", "--format=%i %N")
         return {tuple(row.split()) for row in rows.splitlines()}
 
@@ -119,20 +121,23 @@ class Cluster:
         for name in (".", "munge"):
             (self.folder / name).chmod(0o755)
         sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(3)]
-        ports = [one.getsockname()[1] for one in sockets]
-        for one in sockets:
-            one.close()
+        ports = [listener.getsockname()[1] for listener in sockets]
+        for listener in sockets:
+            listener.close()
         host, user = socket.gethostname().partition(".")[0], getpass.getuser()
         text = CONFIGURATION.format(folder=self.folder, ports=ports, host=host, user=user)
         self.settings.write_text(text)
 
     def _write_clients(self):
-        """Slurm's commands, told of this cluster: in jobs, the plugin takes SLURM_CONF from the
-        environment, as a cluster has its settings in /etc."""
+        """Write wrappers of Slurm's commands that set SLURM_CONF to this cluster.
+
+        The plugin removes SLURM_CONF from the environment of jobs: real clusters have their
+        settings in /etc.
+        """
         for name in CLIENTS:
             client = self.folder / "bin" / name
-            found = shutil.which(name)
-            client.write_text(f'#!/bin/sh\nSLURM_CONF={self.settings} exec {found} "$@"\n')
+            executable = shutil.which(name)
+            client.write_text(f'#!/bin/sh\nSLURM_CONF={self.settings} exec {executable} "$@"\n')
             client.chmod(0o755)
 
     def _daemon(self, program, *arguments, **environment):
@@ -152,28 +157,30 @@ class Cluster:
         return f"{self.folder}/{node}"
 
     def _processes(self, node):
-        """Those of a node: its daemon, the jobs there, and Slurm's keepers of these, whose own
-        environment cannot be read."""
-        found = set()
+        """Return the processes of a node: its daemon, its jobs, and their slurmstepd, whose
+        environment is not readable."""
+        processes = set()
         for process in psutil.process_iter():
             try:
                 environment = process.environ()
-                if environment.get(MARK) == self._mark(node):
-                    found.add(process)
+                if environment.get(NODE_VARIABLE) == self._mark(node):
+                    processes.add(process)
                 elif (environment.get("SLURM_CONF"), environment.get("SLURMD_NODENAME")) == (
                     str(self.settings),
                     node,
                 ):
-                    keepers = (one for one in process.parents() if one.name() == "slurmstepd")
-                    found |= {process, *keepers}
+                    keepers = (
+                        parent for parent in process.parents() if parent.name() == "slurmstepd"
+                    )
+                    processes |= {process, *keepers}
             except psutil.Error:
                 continue
-        return found
+        return processes
 
 
-def until(condition, what, seconds=120):
-    """Wait until `condition()` holds; fail after so many seconds."""
+def until(condition, expectation, seconds=120):
+    """Wait until `condition()` is true; fail after a number of seconds."""
     deadline = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < deadline, f"not within {seconds} s: {what}"
+        assert time.monotonic() < deadline, f"not within {seconds} s: {expectation}"
         time.sleep(0.1)

@@ -1,4 +1,4 @@
-"""A cluster that all tests here share."""
+"""A cluster shared by all tests of this folder."""
 
 import os
 

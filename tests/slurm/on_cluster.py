@@ -1,4 +1,4 @@
-"""A project whose Snakemake sends its jobs to a cluster."""
+"""A project whose Snakemake submits its jobs to a cluster."""
 
 import subprocess
 from contextlib import contextmanager
@@ -8,19 +8,19 @@ from cluster import Cluster
 from project import ROOT, Project
 
 SNAKEMAKE = ROOT / ".venv-slurm/bin/snakemake"
-# so that the tests wait seconds where one waits minutes on a cluster
+# waits of seconds, instead of minutes on a real cluster
 IMPATIENT = ("--slurm-init-seconds-before-status-checks", "2", "--latency-wait", "10")
 
 
 class OnCluster(Project):
-    """The project that is in `folder`, run on a cluster, by the profile for it."""
+    """The project in `folder`, run on a cluster by the Slurm profile."""
 
     def __init__(self, folder: Path, cluster: Cluster):
         self.folder = folder
         self.cluster = cluster
 
     def start(self, *arguments):
-        """Snakemake, running; what it says is added to the file `log`."""
+        """Start Snakemake, and return its process; output is appended to the file `log`."""
         with open(self.folder / "log", "a") as log:
             return subprocess.Popen(
                 self._command(arguments),
@@ -33,7 +33,7 @@ class OnCluster(Project):
 
     @contextmanager
     def running(self, *arguments):
-        """The same, but that it is over at the end of the block, whatever happens there."""
+        """Start Snakemake for the duration of a block: at its end the process is killed."""
         process = self.start(*arguments)
         try:
             yield process
@@ -42,9 +42,9 @@ class OnCluster(Project):
             process.wait()
 
     def snakemake(self, *arguments):
-        before = len(self.log())
+        length_before = len(self.log())
         status = self.start(*arguments).wait()
-        return status, self.log()[before:]
+        return status, self.log()[length_before:]
 
     def log(self):
         path = self.folder / "log"

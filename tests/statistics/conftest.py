@@ -5,7 +5,10 @@ import pytest
 
 
 def _series(rng, autocorrelation_time, samples, count):
-    """AR(1) series, mean 0, variance 1, shape (count, samples), with this 1 + 2 sum rho(k)."""
+    """Return AR(1) series (count, samples) of mean 0 and variance 1.
+
+    Their 1 + 2 sum rho(k) is `autocorrelation_time`.
+    """
     memory = _memory(autocorrelation_time)
     series = np.empty((count, samples))
     series[:, 0] = rng.normal(size=count)
@@ -16,7 +19,7 @@ def _series(rng, autocorrelation_time, samples, count):
 
 
 def _stderr(autocorrelation_time, samples):
-    """Exact standard error of the mean of such a series."""
+    """Return the exact standard error of the mean of such a series."""
     lags = np.arange(1, samples)
     correlations = _memory(autocorrelation_time) ** lags
     return np.sqrt((1 + 2 * np.sum((1 - lags / samples) * correlations)) / samples)

@@ -10,7 +10,7 @@ X = np.geomspace(1, 100, 6)
 T = np.array([0.05, 0.02, 0.01, 0.005])
 
 
-def test_a_positive_power_law():
+def test_a_positive_power_law_is_fitted_with_its_error():
     """The scatter of 2000 exponents is known to 1.6 %: 4 sigma."""
     law = power_law(X, 3 * X**-0.5, np.full(6, 100.0))
     assert law[:3] == pytest.approx((-0.5, 0.1 / np.log(X).std() / np.sqrt(6), 3.0))
@@ -24,7 +24,7 @@ def test_a_positive_power_law():
     assert np.mean([fit.chi_squared for fit in fits]) == pytest.approx(1.0, abs=0.07)
 
 
-def test_points_of_less_weight_count_less_and_a_bias_is_taken_off():
+def test_points_count_by_their_weight_and_a_bias_is_subtracted():
     """Only the precise points lie on a line of slope -1/2."""
     x, y = np.array([1.0, 4, 16, 64]), np.array([1.0, 0.5, 0.25, 9.0])
     assert power_law(x, y, np.ones(4)).exponent > 0
@@ -34,7 +34,7 @@ def test_points_of_less_weight_count_less_and_a_bias_is_taken_off():
     assert biased[::2] == pytest.approx((-0.5, 3.0))
 
 
-def test_a_power_law_of_either_sign():
+def test_a_power_law_of_either_sign_is_fitted_with_its_error():
     """Without noise to the grid; with noise within 3.5 of the errors given, which are right."""
     stderr = np.full(4, 1e-3)
     exact = signed_power_law(T, -1.5 * T**1.2, stderr)
@@ -49,19 +49,21 @@ def test_a_power_law_of_either_sign():
     assert np.mean([fit.chi_squared for fit in fits]) == pytest.approx(1.0, abs=3.5 / np.sqrt(400))
 
 
-def test_the_limit_of_a_parabola():
+def test_the_limit_of_a_parabola_is_its_value_at_zero():
     values, stderr = 0.31 - 0.5 * T + T**2, np.array([1e-3, 2e-3, 1e-3, 2e-3])
     assert limit_at_zero(T, values, stderr)[0] == pytest.approx(0.31, abs=1e-12)
     rng = np.random.default_rng(2)
-    found = [limit_at_zero(T, values + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
-    spread, error = np.std([value for value, _ in found]), found[0][1]
+    limits = [
+        limit_at_zero(T, values + stderr * rng.standard_normal(4), stderr) for _ in range(400)
+    ]
+    spread, error = np.std([value for value, _ in limits]), limits[0][1]
     assert spread == pytest.approx(error, rel=3.5 / np.sqrt(800))
 
 
 LOW, NOISE = 0.27, 0.012  # replicas of 160 disks, averaged over a hundred collisions per particle
 
 
-def found(ensembles):
+def are_bimodal(ensembles):
     return np.array([is_bimodal(values) for values in ensembles])
 
 
@@ -71,28 +73,28 @@ def test_no_false_alarm_among_gaussian_ensembles(replicas):
     rng = np.random.default_rng(41)
     for scatter in (NOISE, 0.25 * LOW):
         ensembles = np.abs(LOW + scatter * rng.standard_normal((3000, replicas)))
-        assert found(ensembles).sum() <= 3
+        assert are_bimodal(ensembles).sum() <= 3
 
 
 @pytest.mark.parametrize("shape", ["gamma", "student"])
 def test_skewed_ensembles_are_no_mixtures_while_they_scatter_little(shape):
-    """Of those that reach 5 sigma hardly any are a quarter of R apart."""
+    """Hardly any of the ensembles beyond 5 sigma have peaks a quarter of R apart."""
     rng = np.random.default_rng(42)
     draw = {
         "gamma": rng.gamma(4.0, 0.5, (3000, 40)) - 2,
         "student": rng.standard_t(5, (3000, 40)) * np.sqrt(3 / 5),
     }
-    assert found(LOW * (1 + 0.03 * draw[shape])).mean() <= 0.01
+    assert are_bimodal(LOW * (1 + 0.03 * draw[shape])).mean() <= 0.01
 
 
 @pytest.mark.parametrize("replicas", [10, 40, 160])
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.9])
 def test_replicas_that_have_run_away_are_found(replicas, share):
-    """One of them or many, most of them or few: all of 300 mixtures."""
+    """From a single replica to 90 % of them: in all of 300 mixtures."""
     rng = np.random.default_rng(43)
     ensembles = LOW + NOISE * rng.standard_normal((300, replicas))
     ensembles[:, : max(1, round(share * replicas))] = 1 - rng.exponential(1e-3, (300, 1))
-    assert found(rng.permuted(ensembles, axis=1)).all()
+    assert are_bimodal(rng.permuted(ensembles, axis=1)).all()
 
 
 def test_replicas_on_their_way_do_not_hide_the_others():
@@ -106,21 +108,21 @@ def test_few_or_equal_replicas_are_no_mixture(values, recwarn):
     assert not is_bimodal(values) and not recwarn.list
 
 
-def test_rounding_and_what_lacks_to_one_are_no_mixture():
+def test_rounding_and_scatter_of_1_minus_R_are_no_mixture():
     """All replicas have run away, some of them further: 1 - R scatters over decades."""
     rng = np.random.default_rng(44)
     lack = 10 ** rng.uniform(-12, -2, (300, 40))
-    assert not found(1 - lack).any()
+    assert not are_bimodal(1 - lack).any()
     assert not is_bimodal(0.3 + 1e-16 * rng.integers(-3, 4, 40))
 
 
 @pytest.mark.parametrize("runaways", [0, 1, 5])
 def test_the_plateau_of_a_mixture_does_not_count(runaways):
-    """They run away before the window begins, so that each replica rests where it is."""
+    """They run away before the window begins, so that each replica stays at its R."""
     rng = np.random.default_rng(45)
     R = LOW + NOISE * rng.standard_normal((40, 200))
     R[:runaways] = 0.999
     plateau = find_plateau(np.arange(1.0, 201), R)
-    assert plateau.found == (runaways == 0)
+    assert plateau.exists == (runaways == 0)
     assert (plateau.start, plateau.stop) == (1, 200)
     assert plateau.mean == pytest.approx(R.mean())

@@ -1,22 +1,22 @@
-"""The study of number and box: what it sees in a gas, all of it in small, what it should find."""
+"""The study of number and box: its observables of a gas, and all of it in small."""
 
 import numpy as np
 import pytest
 from brute_force import KERNELS
 from matplotlib.figure import Figure
-from tests.houses import check_variables, part, quietly
+from raw import FreeCooling, build, start_gas
+from tests.configurations import EXPERIMENTS as WHOLE
 from tests.show.figures.legibility import faults
+from tests.study_modules import check_variables, module_of_study, quietly
 
 from roughgas import config, theory
-from roughgas.scene import build
-from roughgas.simulation.gas import Gas
-from roughgas.tasks.free_cooling import FreeCooling
+from roughgas.tasks.running import Experiments
 
-runs, results = part("finite_size", "tasks"), part("finite_size", "results")
-draw = part("finite_size", "figure").draw
-CONFIG = config.load("tests/experiments.yaml")
+runs, results = module_of_study("finite_size", "tasks"), module_of_study("finite_size", "results")
+draw = module_of_study("finite_size", "figure").draw
+CONFIG = config.load(WHOLE)
 EXPERIMENTS = {
-    name: config.experiment(CONFIG, name, "paper") for name in ("cooling", "cooling_spheres")
+    name: CONFIG.experiment(name, "paper").raw for name in ("cooling", "cooling_spheres")
 }
 EXPERIMENTS["cooling_spheres"]["effects"] = KERNELS["spheres"]["effects"]  # others compile that
 SETTINGS = {
@@ -29,61 +29,65 @@ SETTINGS = {
 
 
 @pytest.fixture(scope="module")
-def parts():
-    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
+def task_results():
+    return {
+        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
+        for task in runs.tasks(SETTINGS)
+    }
 
 
 @pytest.fixture(scope="module")
-def data(parts):
-    return results.combine(parts, SETTINGS)
+def data(task_results):
+    return results.combine(task_results, SETTINGS)
 
 
 def gas_of(sides, dimension):
-    """A gas of `sides`^dimension particles on a lattice that fills its box, spinning alike."""
+    """Return a gas of `sides`^dimension particles on a lattice that fills its box, with equal
+    spins."""
     number, effects = sides**dimension, {"spin": {"inertia": 0.5}}
     experiment = {"particles": number, "box": [4.0 * sides] * dimension, "effects": effects}
-    gas = Gas.start(build(experiment, 0.9, 0.0), experiment, np.random.default_rng(1))
-    places = np.indices([sides] * dimension).reshape(dimension, -1).T
-    gas.state.trajectory[:, :dimension], gas.state.spin[:] = 4.0 * places, 1.0
+    gas = start_gas(build(experiment, 0.9, 0.0), experiment, np.random.default_rng(1))
+    lattice = np.indices([sides] * dimension).reshape(dimension, -1).T
+    gas.state.trajectory[:, :dimension], gas.state.spin[:] = 4.0 * lattice, 1.0
     return gas
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_a_wave_is_told_from_noise(dimension):
-    """A shear wave of the longest wavelength is all there is; half of it with as much of a wave
-    along its own direction, and none where velocities alternate."""
+def test_shear_waves_are_measured(dimension):
+    """All energy is in a shear wave of the longest wavelength; half of it with an equal wave along
+    its own direction; none if velocities alternate."""
     sides = 8
     gas = gas_of(sides, dimension)
     x, v = gas.state.trajectory[:, 0].copy(), gas.state.trajectory[:, dimension : 2 * dimension]
     wave = np.sin(2 * np.pi * x / (4.0 * sides) + 0.3)
     v[:] = 0.0
     v[:, 1] = wave
-    assert runs.look(gas)[1] == pytest.approx(1.0)
+    assert runs.cumulant_and_flow(gas)[1] == pytest.approx(1.0)
     v[:, 0] = wave
-    assert runs.look(gas)[1] == pytest.approx(0.5)
+    assert runs.cumulant_and_flow(gas)[1] == pytest.approx(0.5)
     v[:, 0], v[:, 1] = 0.0, np.cos(np.pi * x / 4.0 + 0.3)
-    assert runs.look(gas)[1] == pytest.approx(0.0, abs=1e-12)
+    assert runs.cumulant_and_flow(gas)[1] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_runs_are_all_different(parts):
-    R = np.concatenate([part.R.values.ravel() for part in parts.values()])
+def test_runs_are_all_different(task_results):
+    R = np.concatenate([result.R.values.ravel() for result in task_results.values()])
     assert len(set(R)) == len(R)
 
 
-def test_results_are_what_they_are_made_of(parts, data):
-    one, part = (
+def test_results_follow_from_the_tasks(task_results, data):
+    gas, result = (
         data.isel(point=1).sel(particles=40, packing=0.001),
-        parts["cooling_r0.8_beta-0.3-n40"],
+        task_results["cooling_r0.8_beta-0.3-n40"],
     )
-    late = part.R.values[1, :, 8:]
-    assert one.theory == pytest.approx(theory.cooling_ratio(0.8, -0.3))
-    assert one.R == pytest.approx(late.mean()) and one.replicas == len(late)
-    assert one.R_stderr == pytest.approx(late.mean(axis=1).std(ddof=1) / np.sqrt(len(late)))
-    assert one.over_dsmc == pytest.approx(late.mean() / float(part.dsmc_R) - 1)
-    assert one.flow_of_noise == 0.05 and one.length == part.length
-    assert one.R_series.sizes == {"part": 16}
+    late = result.R.values[1, :, 8:]
+    assert gas.theory == pytest.approx(theory.cooling_ratio(0.8, -0.3))
+    assert gas.R == pytest.approx(late.mean()) and gas.replicas == len(late)
+    assert gas.R_stderr == pytest.approx(late.mean(axis=1).std(ddof=1) / np.sqrt(len(late)))
+    assert gas.over_dsmc == pytest.approx(late.mean() / float(result.dsmc_R) - 1)
+    assert gas.flow_of_noise == 0.05 and gas.length == result.length
+    assert gas.R_series.sizes == {"part": 16}
     side = np.sqrt(40 * np.pi / 0.001)
-    assert one.box == pytest.approx(side / theory.mean_free_path(0.001))
+    assert gas.box == pytest.approx(side / theory.mean_free_path(0.001))
     assert data.box.isel(point=2, particles=0, packing=0) == pytest.approx(
         (20 * 4 * np.pi / 3 / 0.05) ** (1 / 3) / theory.mean_free_path(0.05, 3)
     )
@@ -102,8 +106,8 @@ def test_it_is_documented_tabulated_and_drawn(data):
     assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
 
 
-def test_a_run_that_collapses_is_unknown_from_there_on():
+def test_a_run_is_unknown_after_its_collapse():
     plain = EXPERIMENTS["cooling"] | {"effects": {"spin": {"inertia": 0.5}}}
-    gas = runs.at_density(FreeCooling(plain, 0.05, 0.0), 40, 0.4)
-    seen = runs.follow(gas, 4, 8, np.random.SeedSequence(1))
-    assert np.isfinite(seen[0]).all() and np.isnan(seen[-1]).all()
+    gas = runs.gas_in_box(FreeCooling(plain, 0.05, 0.0), 40, 0.4)
+    part_values = runs.run_by_events(gas, 4, 8, np.random.SeedSequence(1))
+    assert np.isfinite(part_values[0]).all() and np.isnan(part_values[-1]).all()

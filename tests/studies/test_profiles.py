@@ -1,19 +1,20 @@
-"""Profiles: counted as brute force counts, in limits that are known, and from end to end."""
+"""Profiles: against sums by brute force, in exact limits, and from end to end."""
 
 import numpy as np
 import pytest
 from brute_force import scene_of, settings, snapshot
-from brute_force.beside import brute_force_from
+from brute_force.comparison import brute_force_from
+from raw import initial_state
 from schedules import STEADY
-from tests.houses import check_variables, part, quietly
 from tests.show.figures.legibility import faults
+from tests.study_modules import check_variables, module_of_study, quietly
 
-from roughgas.scene.initial import initial_state
 from roughgas.simulation.gas import Gas
+from roughgas.tasks.running import Experiments
 
-runs, results = part("profiles", "tasks"), part("profiles", "results")
-draw = part("profiles", "figure").draw
-CONTACTS, LEVEL, NEAR, SUMS = runs.CONTACTS, runs.LEVEL, runs.NEAR, runs.SUMS
+runs, results = module_of_study("profiles", "tasks"), module_of_study("profiles", "results")
+draw = module_of_study("profiles", "figure").draw
+CONTACTS, SUMS = runs.CONTACTS, runs.SUMS
 EXPERIMENTS = {
     "bed": settings("bed", 16, [10, "open"]) | {"schedule": STEADY},
     "gas": settings("sheared", 16, [12, 12]) | {"schedule": STEADY},
@@ -36,18 +37,18 @@ def gas_of(experiment, r=0.9, beta=0.3):
 
 
 def counted_plainly(world, brute, phases, periods, width, slices):
-    """SUMS and contacts in slices at phases, (names, phases, slices), event by event."""
+    """Return SUMS and contacts in slices at phases, (names, phases, slices), event by event."""
     sums, contacts = np.zeros((len(SUMS), phases, slices)), np.zeros((4, phases, slices))
     rate = world.shear / world.box[1] if world.shear else 0.0
     for number in range(1, phases * periods + 1):
         event = True
         while event is not None:
-            before = brute.seen.copy()
+            before = brute.contact_sums.copy()
             event = brute.step(number / phases)
             if event is not None and event.kind == "pair":
                 middle = (brute.x[event.i, 1] + brute.x[event.j, 1]) / 2.0
-                place = round(event.time * phases) % phases, min(int(middle / width), slices - 1)
-                contacts[(slice(None), *place)] += np.array([1.0, *(brute.seen - before)])
+                indices = round(event.time * phases) % phases, min(int(middle / width), slices - 1)
+                contacts[(slice(None), *indices)] += np.array([1.0, *(brute.contact_sums - before)])
         for y, (vx, vy), w in zip(brute.x[:, 1], brute.v, brute.w[:, 2], strict=True):
             u = vx - rate * (y - world.box[1] / 2.0) if rate else vx
             row = [1.0, u, vy, u * u, vy * vy, u * vy, w, w * w]
@@ -56,25 +57,26 @@ def counted_plainly(world, brute, phases, periods, width, slices):
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
-def test_sums_are_those_that_brute_force_counts(name):
+def test_sums_agree_with_brute_force(name):
     gas, world = gas_of(EXPERIMENTS[name])
     brute = brute_force_from(world, snapshot(gas.state, gas.scene))
     phases, periods, width, slices = 4, 2, 1.5, 12
     profile = runs.Profile(gas, {"slice": width, "period": 1}, phases, slices)
     for number in range(phases * periods):
-        profile.go_on(number)
+        profile.sample_next_phase(number)
     sums, contacts = counted_plainly(world, brute, phases, periods, width, slices)
     assert contacts[0].sum() >= 10
     assert np.array_equal(profile.sums[0], sums[0])
     assert profile.sums == pytest.approx(sums, abs=1e-6)  # of chaos; numbers are of order 10
     if name == "gas":  # the same everywhere, and counted when the next phase begins
-        contacts, profile.contacts = (one.sum((1, 2)) for one in (contacts, profile.contacts))
+        contacts, profile.contacts = (array.sum((1, 2)) for array in (contacts, profile.contacts))
     assert profile.contacts == pytest.approx(contacts, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_an_elastic_gas_at_rest_is_barometric():
-    """On a floor at rest, n(y) is that of an ideal gas of N disks with a fixed energy E and no
-    momentum along x, (1 - g y/E)^(2 N - 5/2); its temperature is the same at all heights.
+    """On a floor at rest, n(y) of an ideal gas of N disks with a fixed energy E and no momentum
+    along x is (1 - g y/E)^(2 N - 5/2); its temperature is the same at all heights.
 
     The bottom is filled to 0.6 %, which changes the density by about a per cent. 4 sigma, from the
     scatter over 8 runs, in some 8 slices.
@@ -85,9 +87,12 @@ def test_an_elastic_gas_at_rest_is_barometric():
     experiment |= {"schedule": STEADY}
     point = BED | {"r": "1", "beta": "-1", "slice": 2.0, "period": 8, "equilibrate": 2000}
     point |= {"measure": 3200}
-    own = SETTINGS | {"runs": 8, "phases": 2, "slices": 40, "points": [point]}
-    parts = {task: runs.run(task, own, {"bed": experiment}, quietly) for task in runs.tasks(own)}
-    data = results.combine(parts, own).isel(point=0)
+    settings_of_run = SETTINGS | {"runs": 8, "phases": 2, "slices": 40, "points": [point]}
+    results_of_tasks = {
+        task: runs.run(task, settings_of_run, Experiments({"bed": experiment}), quietly)
+        for task in runs.tasks(settings_of_run)
+    }
+    data = results.combine(results_of_tasks, settings_of_run).isel(point=0)
     kinetic = 2 * number * float(data.E_trans_phase.mean())
     energy = kinetic * (2 * number - 0.5) / (number - 0.5)
     edges = g * (2.0 * np.arange(41) - 1.0).clip(0.0) / energy  # the floor is met at height 1
@@ -99,24 +104,27 @@ def test_an_elastic_gas_at_rest_is_barometric():
     assert np.all(off < 4 * data.density_stderr[filled] + 0.02 * expected[filled])
     temperature = kinetic / number
     for name in ("T_across", "T_along"):
-        apart = np.abs(data[name] - temperature)[filled]
-        assert np.all(apart < 4 * data[f"{name}_stderr"][filled])
+        difference = np.abs(data[name] - temperature)[filled]
+        assert np.all(difference < 4 * data[f"{name}_stderr"][filled])
 
 
 @pytest.fixture(scope="module")
-def parts():
-    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
+def task_results():
+    return {
+        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
+        for task in runs.tasks(SETTINGS)
+    }
 
 
-def test_slices_have_the_energy_of_the_gas_and_every_collision(parts):
-    for one in parts.values():
-        assert results.imbalance(one) < 1e-12
-        assert np.all(one.particles.sum("slice") == 16 * one.samples)
-        assert set(CONTACTS) <= set(one) and one.contacts.sum() == one.collisions > 10
+def test_slices_have_the_energy_of_the_gas_and_every_collision(task_results):
+    for run in task_results.values():
+        assert results.imbalance(run) < 1e-12
+        assert np.all(run.particles.sum("slice") == 16 * run.samples)
+        assert set(CONTACTS) <= set(run) and run.contacts.sum() == run.collisions > 10
 
 
-def test_every_point_has_its_profiles(parts):
-    data = results.combine(parts, SETTINGS)
+def test_every_point_has_its_profiles(task_results):
+    data = results.combine(task_results, SETTINGS)
     check_variables("profiles", data)
     assert list(data.point.values) == ["bed_r0.9_beta0.3", "gas_r0.8_beta1"]
     assert list(np.isfinite(data.theta.values)) == [False, True]
@@ -129,8 +137,8 @@ def test_every_point_has_its_profiles(parts):
     assert float(bed.R_quarters) == pytest.approx(float(bed.R_phase[::2].mean()))
 
 
-def test_figure_and_table_show_every_point(parts):
-    data = results.combine(parts, SETTINGS)
+def test_figure_and_table_show_every_point(task_results):
+    data = results.combine(task_results, SETTINGS)
     figure = draw(data)
     _, _, averages, sheared = figure.axes
     assert not any("printed at" in fault for fault in faults(lambda: draw(data)))

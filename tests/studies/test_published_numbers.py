@@ -1,7 +1,7 @@
-"""The table of evidence as it is published: its closed forms, computed anew in thirty digits.
+"""The published table of evidence: its closed forms, computed anew in thirty digits.
 
-Each is written here from its source, and shares no code with the studies. What has no closed form,
-raw data and theories that are solved numerically, is tested elsewhere.
+Each is written here from its source, and shares no code with the studies. Sources without a closed
+form, raw data and theories that are solved numerically, are tested elsewhere.
 """
 
 import functools
@@ -12,7 +12,7 @@ import pytest
 from mpmath import atan, gamma, mp, mpf, pi, sqrt
 from tests.studies.test_exact import evidence, measured
 
-from roughgas.results.evidence import read_rows
+from roughgas.results.comparison import read_rows
 
 mp.dps = 30
 TABLE = {  # N. Clisby & B. M. McCoy (2006), Table 1: B_5 to B_10 over powers of B_2
@@ -23,19 +23,20 @@ SHORT = {"theta": "theta", "beta": "beta", "r": "r", "q": "q", "packing": "x", "
 
 
 def Z(d, x):
-    """The virial series, whose tail is taken as geometric."""
+    """Return the virial series, with a geometric tail."""
     third = {2: mpf(4) / 3 - sqrt(3) / pi, 3: mpf(5) / 8}[d]
     fourth = {
         2: 2 - 9 * sqrt(3) / (2 * pi) + 10 / pi**2,
         3: 219 * sqrt(2) / (2240 * pi) - mpf(89) / 280 + 4131 * atan(sqrt(2)) / (2240 * pi),
     }[d]
     b = [mpf(1), third, fourth, *map(mpf, TABLE[d].split())]
-    terms = [one * (2 ** (d - 1) * x) ** (k + 1) for k, one in enumerate(b)]
+    terms = [ratio * (2 ** (d - 1) * x) ** (k + 1) for k, ratio in enumerate(b)]
     return 1 + sum(terms) + terms[-1] ** 2 / (terms[-2] - terms[-1])
 
 
 def contacts(d, r, beta, theta, q):
-    """Loss of T_tr, gain of T_rot per collision of a particle: Huthmann & Zippelius (1997)."""
+    """Return loss of T_tr and gain of T_rot per collision of a particle: Huthmann & Zippelius
+    (1997)."""
     eta = q * (1 + beta) / (2 + 2 * q)
     loss = (1 - r**2) / 2 + (d - 1) * eta * (1 - eta - eta * theta / q)
     gain = (d - 1) * (eta**2 / q - eta * theta * (1 - eta / q) / q)
@@ -43,7 +44,7 @@ def contacts(d, r, beta, theta, q):
 
 
 def decay(d, r, beta):
-    """That at which theta, the ratio of both temperatures, stays."""
+    """Return the decay rate at stationary theta, the ratio of both temperatures."""
     if beta == -1:
         return contacts(d, r, beta, 0, mpf(1))[0]
     q, low, high = {2: mpf(1) / 2, 3: mpf(2) / 5}[d], mpf(0), mpf(10)
@@ -59,7 +60,7 @@ def a2(d, r, denominator):
 
 
 def loss_of_energy(d, r, a2):
-    """mu_2, and the rate beta_1 at which fast particles are lost: van Noije & Ernst (1998)."""
+    """Return mu_2, and the rate beta_1 of the loss of fast particles: van Noije & Ernst (1998)."""
     mu = (1 - r**2) * pi ** (mpf(d - 1) / 2) / (sqrt(2) * gamma(mpf(d) / 2)) * (1 + 3 * a2 / 16)
     return mu, pi ** (mpf(d - 1) / 2) / gamma(mpf(d + 1) / 2)
 
@@ -105,18 +106,20 @@ FORMULAS = {  # by beginnings of the quantity and of the source
     ("exponent of time in the cooling of visc", "Haff"): lambda: mpf(2),
 }
 ROWS = [row for _, row in read_rows("figures/evidence.csv")]
-ROWS += evidence.rows(measured())  # those that the code makes now
+ROWS += evidence.rows(measured())  # as computed now
 
 
-def place(row):
-    """The parameters of a row, such as {"d": 2, "r": 0.9}."""
-    found = dict(re.findall(r"(\w+) (?:= )?(-?[0-9.]+)", row.at))
+def parameters_of(row):
+    """Return the parameters of a row, such as {"d": 2, "r": 0.9}."""
+    parameters = dict(re.findall(r"(\w+) (?:= )?(-?[0-9.]+)", row.at))
     dimension = {"disks": 2, "spheres": 3}.get(row.at.split(",")[0])
-    return {"d": dimension} | {SHORT.get(name, name): mpf(text) for name, text in found.items()}
+    return {"d": dimension} | {
+        SHORT.get(name, name): mpf(text) for name, text in parameters.items()
+    }
 
 
 @pytest.mark.parametrize("key", FORMULAS)
-def test_published_numbers_are_those_of_their_equations(key):
+def test_published_numbers_follow_from_their_equations(key):
     quantity, source = key
     formula = FORMULAS[key]
     names = formula.__code__.co_varnames[: formula.__code__.co_argcount]
@@ -125,15 +128,16 @@ def test_published_numbers_are_those_of_their_equations(key):
     ]
     assert rows
     for row in rows:
-        expected = formula(*(place(row)[name] for name in names))
+        expected = formula(*(parameters_of(row)[name] for name in names))
         assert row.theirs.value == pytest.approx(float(expected), rel=5.1e-9)
 
 
 def changes(x, r, beta):
-    """What contacts of disks do to <V^2>, <w^2>, <V^4>, <V^2 w^2>, <w^4>: of Maxwellians and by
-    a20, a11, a02, to first order, (moments, 1 + cumulants). Gauss's rules are exact here.
+    """Return the changes of <V^2>, <w^2>, <V^4>, <V^2 w^2>, <w^4> by contacts of disks: of
+    Maxwellians and by a20, a11, a02, to first order, (moments, 1 + cumulants). Gauss's rules are
+    exact here.
 
-    T_tr = m = a = 1, <w^2> = x; the polynomials are those of A. Megias & A. Santos (2023).
+    T_tr = m = a = 1, <w^2> = x; the polynomials follow A. Megias & A. Santos (2023).
     """
     hermite, weights = np.polynomial.hermite_e.hermegauss(5)
     laguerre, falls = np.polynomial.laguerre.laggauss(5)
@@ -142,7 +146,7 @@ def changes(x, r, beta):
     nodes = [hermite * np.sqrt(0.5), g, hermite, hermite, *2 * [hermite * np.sqrt(x)]]
     shares = [weights, np.concatenate([falls, falls]), *4 * [weights]]
     middle, g, t_1, t_2, w_1, w_2 = np.meshgrid(*nodes, indexing="ij", sparse=True)
-    share = functools.reduce(np.multiply.outer, [one / one.sum() for one in shares])
+    share = functools.reduce(np.multiply.outer, [axis / axis.sum() for axis in shares])
     n_1, n_2 = middle + g / 2, middle - g / 2
     eta, slip = Q2 * (1 + beta) / (2 + 2 * Q2), t_1 - t_2 - w_1 - w_2
 
@@ -158,16 +162,16 @@ def changes(x, r, beta):
     before = moments(n_1, t_1, w_1)
     after = moments(n_1 - (1 + r) / 2 * g, t_1 - eta * slip, w_1 + eta / Q2 * slip)
     both = zip(polynomials(n_1, t_1, w_1), polynomials(n_2, t_2, w_2), strict=True)
-    factors = [1.0, *(one + other for one, other in both)]
+    factors = [1.0, *(first + second for first, second in both)]
     change = [new - old for new, old in zip(after, before, strict=True)]
-    return np.array([[np.sum(share * one * factor) for factor in factors] for one in change])
+    return np.array([[np.sum(share * moment * factor) for factor in factors] for moment in change])
 
 
 def state(r, beta, share=None):
-    """R, a20, a11, a02 of disks: stationary with white noise, or in ratios in cooling."""
+    """Return R, a20, a11, a02 of disks: stationary with white noise, or in ratios for cooling."""
 
     def cumulants(x):
-        """These where <w^2> = x, and by how much the balance of both energies is missed."""
+        """Return the cumulants at <w^2> = x, and the imbalance of both energies."""
         J = changes(x, r, beta)
         if share is None:  # <V^4> = 8 (1 + a20) falls as <V^2>^2, and so on
             fall = np.array([J[0], J[0] / 2 + J[1] / x, 2 * J[1] / x])
@@ -191,16 +195,25 @@ def state(r, beta, share=None):
 SONINE = [row for row in ROWS if row.source.startswith("Megias & Santos 2023")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("driven", [False, True])
 def test_sonine_states_of_disks_by_gaussian_quadrature(driven):
     rows = [row for row in SONINE if ("white noise" in row.quantity) == driven]
     rows = [row for row in rows if "spheres" not in row.at]
     assert len(rows) > 10
-    known = {}
+    states = {}
     for row in rows:
-        at = {name: float(one) for name, one in place(row).items() if one is not None}
-        about = at["r"], at["beta"], at.get("spin_share")
-        if about not in known:
-            known[about] = dict(zip(("R", "a20", "a11", "a02"), state(*about), strict=True))
-        expected = known[about][row.quantity.split()[0]]
+        parameters_of_row = {
+            name: float(value) for name, value in parameters_of(row).items() if value is not None
+        }
+        parameters = (
+            parameters_of_row["r"],
+            parameters_of_row["beta"],
+            parameters_of_row.get("spin_share"),
+        )
+        if parameters not in states:
+            states[parameters] = dict(
+                zip(("R", "a20", "a11", "a02"), state(*parameters), strict=True)
+            )
+        expected = states[parameters][row.quantity.split()[0]]
         assert row.theirs.value == pytest.approx(expected, rel=1e-8, abs=1e-11)

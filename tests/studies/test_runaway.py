@@ -1,20 +1,21 @@
-"""The study of runaway spins: how it tells escapes and their times, and that two methods agree."""
+"""The study of runaway spins: escapes and their times, and agreement of two methods."""
 
 import math
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from tests.houses import check_variables, part, quietly
+from raw import FreeCooling
 from tests.show.figures.legibility import faults
+from tests.study_modules import check_variables, module_of_study, quietly
 
 from roughgas import config, theory
-from roughgas.tasks import stream
-from roughgas.tasks.free_cooling import FreeCooling
+from roughgas.tasks import seed_sequence
+from roughgas.tasks.running import Experiments
 
-runs, results = part("runaway", "tasks"), part("runaway", "results")
-draw = part("runaway", "figure").draw
-EXPERIMENTS = {"cooling": config.experiment(config.load("config.yaml"), "cooling", "paper")}
+runs, results = module_of_study("runaway", "tasks"), module_of_study("runaway", "results")
+draw = module_of_study("runaway", "figure").draw
+EXPERIMENTS = {"cooling": config.load("config.yaml").experiment("cooling", "paper").raw}
 COOLING = FreeCooling(EXPERIMENTS["cooling"], 0.9, 0.0)
 SETTINGS = {
     "seed": 3,
@@ -32,16 +33,19 @@ SETTINGS = {
 
 
 @pytest.fixture(scope="module")
-def parts():
-    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
+def task_results():
+    return {
+        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
+        for task in runs.tasks(SETTINGS)
+    }
 
 
 @pytest.fixture(scope="module")
-def data(parts):
-    return results.combine(parts, SETTINGS)
+def data(task_results):
+    return results.combine(task_results, SETTINGS)
 
 
-def test_who_takes_part():
+def test_participation():
     """One of ten particles spins; all spin alike; two energies of 1 and one of 2."""
     alone = np.zeros((10, 1))
     alone[3] = -2.0
@@ -52,55 +56,59 @@ def test_who_takes_part():
 
 
 def scripted(*R):
-    left = iter(np.reshape(R, (-1, runs.STRIDE)))
-    return lambda: (next(left), np.ones((4, 1)))
+    remaining = iter(np.reshape(R, (-1, runs.STEP_LENGTH)))
+    return lambda: (next(remaining), np.ones((4, 1)))
 
 
 def test_an_escape_is_dated_by_the_collision():
     ratios = 0.1, 0.2, 0.3, 0.4, 0.5, 0.899, 0.91, 0.95
-    assert runs.escape(scripted(*ratios), 100) == (7.0, 7.0, 0.25, 4.0)
-    time, *others = runs.escape(scripted(*ratios), 4)
-    assert math.isnan(time) and others == [4.0, 0.25, 4.0]
-    R, share, number = runs.follow(scripted(0.1, 0.2, 0.3, 0.4, 1, 1, 1, 1), 12)
+    assert runs.run_until_escape(scripted(*ratios), 100) == (7.0, 7.0, 0.25, 4.0)
+    time, *final = runs.run_until_escape(scripted(*ratios), 4)
+    assert math.isnan(time) and final == [4.0, 0.25, 4.0]
+    R, share, number = runs.record_series(scripted(0.1, 0.2, 0.3, 0.4, 1, 1, 1, 1), 12)
     np.testing.assert_array_equal(R, [0.4, 1.0, np.nan])
     np.testing.assert_array_equal(share, [0.25, 0.25, np.nan])
     np.testing.assert_array_equal(number, [4.0, 4.0, np.nan])
 
 
-def test_times_are_unbiased_where_runs_are_given_up():
-    """Exponential times of mean 1000, ten runs each, given up after 800, of 2000 studies: the
-    estimate is known to have a bias of a tenth here; the error covers the truth as one sigma."""
+def test_times_of_escape_are_unbiased_with_unfinished_runs():
+    """Exponential times of mean 1000, ten runs each, ended after 800, of 2000 studies: the estimate
+    has a known bias of a tenth here; the error covers the truth as one sigma."""
     rng = np.random.default_rng(4)
     time = rng.exponential(1000, (2000, 30))
     observed = np.minimum(time, 800)
-    found = [
-        results.time_of_escape(np.where(one <= 800, one, np.nan), seen)[0]
-        for one, seen in zip(time, observed, strict=True)
+    estimates = [
+        results.time_of_escape(np.where(row <= 800, row, np.nan), length)[0]
+        for row, length in zip(time, observed, strict=True)
     ]
-    values, errors = np.array([one[:2] for one in found]).T
+    values, errors = np.array([estimate[:2] for estimate in estimates]).T
     assert values.mean() == pytest.approx(1000, rel=0.06)
     assert np.mean(np.abs(values - 1000) < errors) == pytest.approx(0.68, abs=0.05)
 
 
-def test_what_is_combined(data, parts):
-    one = parts["dsmc-n400-mu0.1"]
-    there = data.sel(mu=0.1, dsmc_particles=400)
-    assert there.dsmc_escapes == np.isfinite(one.time).sum() == there.dsmc_runs == 4
-    assert there.dsmc_time == pytest.approx(one.time.mean().item())
-    assert there.dsmc_largest_share == pytest.approx(np.median(one.largest_share))
-    assert there.predicted_time == pytest.approx(theory.runaway_time(400, 0.9, 0.0, 0.1))
+@pytest.mark.slow
+def test_combined_results_follow_from_the_tasks(data, task_results):
+    run = task_results["dsmc-n400-mu0.1"]
+    gas = data.sel(mu=0.1, dsmc_particles=400)
+    assert gas.dsmc_escapes == np.isfinite(run.time).sum() == gas.dsmc_runs == 4
+    assert gas.dsmc_time == pytest.approx(run.time.mean().item())
+    assert gas.dsmc_largest_share == pytest.approx(np.median(run.largest_share))
+    assert gas.predicted_time == pytest.approx(theory.runaway_time(400, 0.9, 0.0, 0.1))
     stays = data.sel(mu=0.5, dsmc_particles=40)
     assert stays.dsmc_escapes == 0 and stays.dsmc_bound == pytest.approx(3000 / math.log(20))
     assert np.isnan(stays.dsmc_time) and np.isnan(stays.dsmc_largest_share)
-    at = data.sel(mu=0.05, events_particles=40)
-    both = at.events_time / data.sel(mu=0.05, dsmc_particles=40).dsmc_time
-    assert at.events_escapes > 0 and at.events_over_dsmc == pytest.approx(both.item())
+    events_gas = data.sel(mu=0.05, events_particles=40)
+    both = events_gas.events_time / data.sel(mu=0.05, dsmc_particles=40).dsmc_time
+    assert events_gas.events_escapes > 0 and events_gas.events_over_dsmc == pytest.approx(
+        both.item()
+    )
     exposed = 40 * 5 * 600 + 400 * 4 * 400
     assert data.rate_bound.sel(mu=0.5) == pytest.approx(math.log(20) / exposed)
     assert data.threshold.sel(mu=0.05) == 0 and np.isnan(data.rate.sel(mu=0.05))
     assert data.example_R.shape == (1, 10) and data.passed[-1] == 40
 
 
+@pytest.mark.slow
 def test_it_is_documented_tabulated_and_drawn(data):
     check_variables("runaway", data)
     table = results.table(data)
@@ -114,13 +122,15 @@ def test_it_is_documented_tabulated_and_drawn(data):
 @pytest.mark.slow
 @pytest.mark.parametrize("particles, mu", [(100, 0.1), (600, 0.15)])
 def test_events_and_dsmc_agree_where_the_gas_is_dilute(particles, mu):
-    """On the time of escape, 24 gases each: within 4 standard errors."""
-    found = []
+    """The time of escape of 24 gases each: within 4 standard errors."""
+    times = []
     for start, key in ((runs.without_positions, 0), (runs.by_events, 1)):
-        seeds = stream(SETTINGS, 100 + key, particles).spawn(24)
+        seeds = seed_sequence(SETTINGS, 100 + key, particles).spawn(24)
         steps = (start(COOLING, SETTINGS, mu, particles, seed) for seed in seeds)
-        time = np.array([runs.escape(step, 20000)[0] for step in steps])
-        found.append(results.time_of_escape(time, time)[0])
-    one, other = found
-    assert one.value - other.value == pytest.approx(0, abs=4 * math.hypot(one.stderr, other.stderr))
-    assert math.hypot(one.stderr, other.stderr) < 0.35 * one.value
+        time = np.array([runs.run_until_escape(step, 20000)[0] for step in steps])
+        times.append(results.time_of_escape(time, time)[0])
+    first, second = times
+    assert first.value - second.value == pytest.approx(
+        0, abs=4 * math.hypot(first.stderr, second.stderr)
+    )
+    assert math.hypot(first.stderr, second.stderr) < 0.35 * first.value

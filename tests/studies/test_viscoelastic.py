@@ -1,20 +1,21 @@
-"""The study of viscoelastic gases: published exponents stand beside those of the right gases."""
+"""The study of viscoelastic gases: each gas is compared with its published exponent."""
 
 import pytest
-from tests.houses import part
+from tests.study_modules import module_of_study
 from tests.synthetic import viscoelastic
 
-from roughgas.results.evidence import AGREES, DIFFERS
+from roughgas.results.row_verdicts import AGREES, DIFFERS, verdicts
 
-rows = part("viscoelastic", "evidence").rows
+rows = module_of_study("viscoelastic", "evidence").rows
 
 
 @pytest.mark.parametrize("exponent", [5 / 3, 2.0])
 def test_roughness_decides_which_exponent_is_expected(exponent):
-    found = list(rows(viscoelastic(exponent=exponent)))
-    lossless = [abs(float(row.at.split("beta = ")[1])) == 1.0 for row in found]
-    assert 0 < sum(lossless) < len(found)
-    for row, alone in zip(found, lossless, strict=True):
+    evidence_rows = list(rows(viscoelastic(exponent=exponent)))
+    lossless = [abs(float(row.at.split("beta = ")[1])) == 1.0 for row in evidence_rows]
+    assert 0 < sum(lossless) < len(evidence_rows)
+    judged = zip(evidence_rows, verdicts(evidence_rows), lossless, strict=True)
+    for row, verdict, alone in judged:
         assert row.theirs.value == (5 / 3 if alone else 2.0)
-        assert row.verdict == (AGREES if row.theirs.value == exponent else DIFFERS)
+        assert verdict == (AGREES if row.theirs.value == exponent else DIFFERS)
         assert ("Schwager" in row.source) == alone

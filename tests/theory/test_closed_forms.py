@@ -1,4 +1,4 @@
-"""Closed forms of R, cooling and frequencies, beside high precision and limits."""
+"""Closed forms of R, cooling and frequencies, against high precision and limits."""
 
 import itertools
 import math
@@ -23,7 +23,7 @@ inertia = st.floats(0.01, 1)
 
 
 def exact_K(r, beta, dimension, q):
-    """K by the textbook root of the theory of free cooling, in mpmath."""
+    """Return K by the textbook root of the theory of free cooling, in mpmath."""
     with mpmath.workdps(DIGITS):
         r, beta, q = (mpmath.mpf(float(x)) for x in (r, beta, q))
         alpha = mpmath.mpf(2) / (dimension - 1)
@@ -40,7 +40,7 @@ def relative_error(value, exact):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_cooling_ratio_at_high_precision(dimension):
+def test_the_cooling_ratio_agrees_with_high_precision(dimension):
     q = theory.moment_of_inertia(dimension)
     for r, beta in itertools.product(RS, BETAS):
         exact = exact_K(r, beta, dimension, q)
@@ -52,7 +52,7 @@ def test_cooling_ratio_at_high_precision(dimension):
         assert relative_error(R, ratio) < 1e-14, (r, beta)
 
 
-def test_lun_ratio_at_high_precision():
+def test_the_lun_ratio_agrees_with_high_precision():
     for beta, q in itertools.product(BETAS, [0.5, 0.4, 1.0, 1e-3]):
         with mpmath.workdps(50):
             exact_beta, exact_q = mpmath.mpf(float(beta)), mpmath.mpf(q)
@@ -62,7 +62,7 @@ def test_lun_ratio_at_high_precision():
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_smooth_elastic_limit(dimension):
+def test_smooth_elastic_limits_are_exact(dimension):
     assert theory.cooling_ratio(1, -1, dimension) == 0
     assert np.isinf(theory.cooling_K(1, -1, dimension))
     assert 0 < theory.cooling_ratio(1, -1 + 1e-12, dimension) < 1e-12
@@ -85,7 +85,7 @@ def test_arguments_broadcast_and_plain_numbers_stay_plain():
 @settings(derandomize=True, deadline=None)
 @given(beta=roughness, q=inertia, c=st.floats(-1.0, 1.0))
 def test_a_correlation_at_contacts_leaves_rotation_as_it_is(beta, q, c):
-    """Put into Eq. (deltaEr), the ratio gives no change; uncorrelated it is Lun's formula."""
+    """By Eq. (deltaEr) the ratio does not change; without correlation it is Lun's formula."""
     R = theory.correlated_ratio(beta, q, c)
     assert 0.0 <= R <= 1.0
     assert theory.correlated_ratio(beta, q, 0.0) == pytest.approx(
@@ -98,7 +98,7 @@ def test_a_correlation_at_contacts_leaves_rotation_as_it_is(beta, q, c):
         assert abs(change) <= 1e-9 * (size + abs(c) * math.sqrt(square) + square)
 
 
-def test_dilute_limits():
+def test_dilute_gases_have_the_textbook_frequencies():
     """nu = 2 n sigma sqrt(pi T) and 4 n sigma^2 sqrt(pi T), with the diameter sigma = 2."""
     phi = 1e-9
     n2, n3 = theory.number_density(phi, 2), theory.number_density(phi, 3)
@@ -117,12 +117,13 @@ def test_contact_values_follow_the_virial_series():
     assert (theory.contact_value(1e-7, 3) - 1) / 1e-7 == pytest.approx(5 / 2, rel=1e-5)
 
 
-def test_a_box_is_as_full_as_its_particles_are_dense():
+def test_packing_and_number_density_of_a_box_agree():
     for box in ([10.0, 30.0], [8.0, 9.0, 10.0]):
         phi = theory.packing_fraction(12, box)
         assert theory.number_density(phi, len(box)) == pytest.approx(12 / np.prod(box))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_haff_temperature_solves_the_rate_equations_in_time(dimension):
     r, beta, T0, packing = np.array([0.9, 0.8, 0.99]), np.array([-0.5, 0.3, 1.0]), 1.7, 0.05
@@ -156,14 +157,14 @@ def test_decay_rate_is_the_loss_at_the_stationary_state(dimension):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_smooth_gas(dimension):
+def test_a_smooth_gas_cools_by_haffs_law(dimension):
     """Haff (1983) for smooth particles: t_h = 2 D/[nu (1 - r^2)]."""
     expected = 2 * dimension / (0.3 * (1 - 0.8**2))
     assert theory.haff_time(0.8, -1, 0.3, dimension) == pytest.approx(expected, rel=1e-14)
     assert theory.decay_rate(0.8, -1 + 1e-9, dimension) < 1e-8
 
 
-ALL_TAKE = {
+FUNCTIONS_OF = {
     "restitution r": [
         *(theory.goldshtein_ratio, theory.cooling_ratio, theory.cooling_K, theory.collision_rates),
         *(theory.stationary_ratio, theory.stationary_theta, theory.relaxation_rate),
@@ -192,11 +193,15 @@ ALL_TAKE = {
         lambda q: theory.rotational_energy_change(1, 0, 1, 0, q),
     ],
 }
-ALL_TAKE["roughness beta"] = [
-    lambda beta, one=one: one(0.9, np.array([0, beta, 1])) for one in ALL_TAKE["restitution r"]
+FUNCTIONS_OF["roughness beta"] = [
+    lambda beta, closed_form=closed_form: closed_form(0.9, np.array([0, beta, 1]))
+    for closed_form in FUNCTIONS_OF["restitution r"]
 ]
-ALL_TAKE["restitution r"] = [lambda r, one=one: one(r, 0) for one in ALL_TAKE["restitution r"]]
-BAD = {
+FUNCTIONS_OF["restitution r"] = [
+    lambda r, closed_form=closed_form: closed_form(r, 0)
+    for closed_form in FUNCTIONS_OF["restitution r"]
+]
+ILLEGAL = {
     "restitution r": ([1.5, -0.1, np.nan, np.inf, "0.5", None, True, 1j], "must lie in [0, 1]"),
     "roughness beta": ([1.5, -1.1, np.nan], "must lie in [-1, 1]"),
     "dimension": ([0, 1, 4, 2.5, np.nan, "2", None], "must be 2 or 3"),
@@ -204,10 +209,10 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("key", BAD)
-def test_arguments_outside_their_range(key):
-    values, legal = BAD[key]
-    for function, value in itertools.product(ALL_TAKE[key], values):
+@pytest.mark.parametrize("key", ILLEGAL)
+def test_arguments_outside_their_range_are_refused(key):
+    values, legal = ILLEGAL[key]
+    for function, value in itertools.product(FUNCTIONS_OF[key], values):
         with pytest.raises(InputError) as caught:
             function(value)
         assert str(caught.value) == f"{key} = {value}: {legal}"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.theory.collisions import maxwellian_pairs, sigmas
-from tests.theory.tracers import spin_in_the_end
+from tests.theory.tracers import final_spins
 
 from roughgas import theory
 
@@ -26,8 +26,8 @@ temperature = st.floats(0, 5)
 
 
 def sampled_changes(theta, r, beta, mu, dimension, q, seed):
-    """Energy changes of pairs of a gas with T_tr = 1, T_rot = theta, who slides, and how often each
-    pair collides."""
+    """Return energy changes of pairs of a gas with T_tr = 1 and T_rot = theta, translational and
+    rotational, whether each pair slides, and its collision weight."""
     before = maxwellian_pairs(np.random.default_rng(seed), PAIRS, dimension, theta / q)
     after = before.after(r, beta, q, mu)
     impulse = after.v1 - before.v1
@@ -60,7 +60,7 @@ def test_changes_are_those_of_sampled_collisions(dimension, r, beta, mu, theta, 
 
 @settings(derandomize=True, deadline=None)
 @given(**gases, T_tr=temperature, T_rot=temperature)
-def test_infinite_friction_is_the_gas_without(r, beta, q, dimension, T_tr, T_rot):
+def test_infinite_friction_is_the_gas_without_sliding(r, beta, q, dimension, T_tr, T_rot):
     gas = (r, beta, np.inf, dimension, q)
     expected = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, q, 3.0)
     assert theory.friction_changes(T_tr, T_rot, *gas, 3.0) == pytest.approx(expected, rel=1e-14)
@@ -84,7 +84,7 @@ def test_energy_is_never_gained(r, beta, q, dimension, mu, T_tr, T_rot):
 
 @settings(derandomize=True, deadline=None)
 @given(r=st.floats(0, 1), beta=st.floats(-0.999, 1), q=st.floats(0.05, 1), mu=st.floats(1e-3, 10))
-def test_driven_disks_in_closed_form(r, beta, q, mu):
+def test_driven_disks_obey_a_closed_form(r, beta, q, mu):
     """Lun's formula with friction, at mu = inf with a root of 1 - e: dT_rot = 0 is a quadratic."""
     e, kappa = (1 + beta) / (2 * (1 + q)), mu * (1 + r) / 2
     theta = 2 * q * e / (1 - e + np.hypot(1 - e, q * e / kappa))
@@ -92,18 +92,19 @@ def test_driven_disks_in_closed_form(r, beta, q, mu):
     assert pytest.approx(theta / (1 + theta), abs=1e-13) == R
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None)
 @given(**gases, mu=friction, spin_share=share)
 def test_stationary_states_are_stationary(r, beta, q, dimension, mu, spin_share):
-    """Where R is not 0 or 1; ln theta stands still, or losses are shared as the drive does."""
+    """For 0 < R < 1 ln theta is constant, or the losses have the shares of the drive."""
     R = theory.friction_ratio(r, beta, mu, dimension, q, spin_share)
     assert 0 <= R <= 1
     tr, rot = theory.friction_changes(1 - R, R, r, beta, mu, dimension, q)
     if spin_share is None:
         assert R * tr == pytest.approx((1 - R) * rot, abs=1e-13)
     else:
-        wanted = (1 - spin_share) * (2 * dimension - 3) * rot
-        assert spin_share * dimension * tr == pytest.approx(wanted, abs=1e-13 / q**2)
+        rotational_loss = (1 - spin_share) * (2 * dimension - 3) * rot
+        assert spin_share * dimension * tr == pytest.approx(rotational_loss, abs=1e-13 / q**2)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -115,12 +116,12 @@ def test_a_cooling_gas_has_at_most_two_stationary_states_and_R_is_the_first(dime
     mu, q = 10 ** rng.uniform(-5, 1, size), 10 ** rng.uniform(-1.5, 0.3, size)
     tr, rot = theory.friction_changes(1, theta, r, beta, mu, dimension, q)
     changes = np.diff(rot / theta - tr > 0)
-    some, first = changes.any(axis=1), changes.argmax(axis=1)
+    with_states, first = changes.any(axis=1), changes.argmax(axis=1)
     R = theory.friction_ratio(r, beta, mu, dimension, q)[:, 0]
-    found = R[some] / (1 - R[some])
-    assert (theta[first[some]] <= found).all()
-    assert (found <= theta[first[some] + 1]).all()
-    assert (R[~some] > 1 - 1e-10).all()
+    stationary = R[with_states] / (1 - R[with_states])
+    assert (theta[first[with_states]] <= stationary).all()
+    assert (stationary <= theta[first[with_states] + 1]).all()
+    assert (R[~with_states] > 1 - 1e-10).all()
     assert set(changes.sum(axis=1)) == {0, 1, 2}
 
 
@@ -139,14 +140,14 @@ GASES = [(0.9, 0.0, 2), (0.9, -0.5, 2), (0.8, 1.0, 2), (0.9, 0.5, 3)]
 
 
 @pytest.mark.parametrize(("r", "beta", "dimension"), GASES)
-def test_without_sliding_it_is_that_of_the_rate_equations(r, beta, dimension):
-    found = theory.friction_relaxation_rate(r, beta, np.inf, dimension)
-    assert found == pytest.approx(theory.relaxation_rate(r, beta, dimension), rel=1e-6)
+def test_the_relaxation_rate_without_sliding_is_that_of_the_rate_equations(r, beta, dimension):
+    rate = theory.friction_relaxation_rate(r, beta, np.inf, dimension)
+    assert rate == pytest.approx(theory.relaxation_rate(r, beta, dimension), rel=1e-6)
 
 
 @pytest.mark.parametrize("mu", [0.02, 0.15, 0.5, 2.0])
 @pytest.mark.parametrize(("r", "beta", "dimension"), GASES)
-def test_a_small_deviation_fades_at_this_rate(r, beta, dimension, mu):
+def test_a_small_deviation_fades_at_the_relaxation_rate(r, beta, dimension, mu):
     """Integrated in small steps: a deviation of theta, or 1/theta where R goes to 1."""
     rate = theory.friction_relaxation_rate(r, beta, mu, dimension)
     R = theory.friction_ratio(r, beta, mu, dimension)
@@ -166,21 +167,22 @@ def test_a_small_deviation_fades_at_this_rate(r, beta, dimension, mu):
 RUNAWAY_GASES = [(0.9, 0.0, 0.1, 2), (0.9, 0.0, 0.3, 3)]
 
 
-def simulated(gas, start, folds, spinners=1500):
-    """What `spin_in_the_end` returns after so many e-folds of the temperature of the gas."""
+def simulated_spinners(gas, start, folds, spinners=1500):
+    """Return the result of `final_spins` after `folds` e-folds of the gas temperature."""
     r, beta, mu, dimension = gas
     R, rate = theory.friction_ratio(*gas), theory.cooling_rate(*gas)
-    around = r, beta, mu, R / (1 - R), dimension
+    surroundings = r, beta, mu, R / (1 - R), dimension
     tau = theory.spinner_temperature(*gas)
-    return spin_in_the_end(spinners, start, around, rate, tau, folds / rate, 1)
+    return final_spins(spinners, start, surroundings, rate, tau, folds / rate, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gas", RUNAWAY_GASES)
 def test_a_spinner_loses_the_threshold_and_keeps_the_rest(gas):
     """From three times the threshold, so that contacts slide at all times. Within 4 standard errors
     and, where contacts push most (mu = 0.3), 3 % for velocities that are not Maxwellian."""
     threshold = theory.runaway_spin(*gas)
-    left, square = simulated(gas, 3 * threshold, 12)
+    left, square = simulated_spinners(gas, 3 * threshold, 12)
     lost = 3 - left / threshold
     error = lost.std(ddof=1) / math.sqrt(len(lost))
     assert error < 0.01
@@ -203,8 +205,8 @@ def test_pushes_balance_the_cooling_of_a_spinner(dimension):
 
 
 @pytest.mark.parametrize("gas", [(0.9, 0.0, 0.08, 2), (0.9, 0.0, 0.105, 3)])
-def test_the_share_of_a_maxwellian_beyond_the_threshold(gas):
-    """Of two million drawn; within 4 standard errors."""
+def test_the_share_beyond_the_threshold_is_that_of_a_sampled_maxwellian(gas):
+    """Of two million random spins; within 4 standard errors."""
     size = 2_000_000, 2 * gas[3] - 3
     spins = np.random.default_rng(2).standard_normal(size, np.float32)
     R, q = theory.friction_ratio(*gas), theory.moment_of_inertia(gas[3])
@@ -215,8 +217,8 @@ def test_the_share_of_a_maxwellian_beyond_the_threshold(gas):
     assert np.mean(spins > theory.runaway_spin(*gas)) == pytest.approx(expected, abs=4 * error)
 
 
-def cheapest_way(gas):
-    """The least E of all beginnings: p by bisection of its equation, averages by quadrature."""
+def minimal_exponent(gas):
+    """Return the minimum of E over all initial spins: p by bisection, averages by quadrature."""
     R, rate, threshold = (
         theory.friction_ratio(*gas),
         theory.cooling_rate(*gas),
@@ -229,28 +231,33 @@ def cheapest_way(gas):
     density /= density.sum()
     w = np.linspace(0.1, 1, 500) * threshold
     p = np.empty(len(w))
-    for k, one in enumerate(w):
+    for k, spin in enumerate(w):
         low, high = 1e-6, 1e3
         for _ in range(50):
             p[k] = math.sqrt(low * high)
-            grows = rate * p[k] * one / 2 > frequency * (1 - np.sum(density * np.exp(-p[k] * lost)))
+            grows = rate * p[k] * spin / 2 > frequency * (
+                1 - np.sum(density * np.exp(-p[k] * lost))
+            )
             low, high = (low, p[k]) if grows else (p[k], high)
     path = np.cumsum(((p[1:] + p[:-1]) / 2 * np.diff(w))[::-1])[::-1]
     return np.min(w[:-1] ** 2 / (2 * variance) + path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.1, 0.2, 0.4])
-def test_the_rate_is_that_of_the_cheapest_way(mu):
+def test_the_runaway_rate_is_that_of_the_most_probable_path(mu):
     gas = 0.9, 0.0, mu
-    assert -math.log(theory.runaway_rate(*gas)) == pytest.approx(cheapest_way(gas), rel=2e-3)
+    assert -math.log(theory.runaway_rate(*gas)) == pytest.approx(minimal_exponent(gas), rel=2e-3)
 
 
 def test_the_time_of_escape_is_waiting_and_growth():
     gas, particles = (0.9, 0.0, 0.2), np.array([1e2, 1e4, 1e6])
-    growth, time = (one(particles, *gas) for one in (theory.runaway_growth, theory.runaway_time))
+    growth, time = (
+        function(particles, *gas) for function in (theory.runaway_growth, theory.runaway_time)
+    )
     waiting = 1 / (particles * theory.runaway_rate(*gas))
     assert time == pytest.approx(growth + waiting)
-    # the spinner's energy is then nine times that of all translation
+    # then the spinner has nine times the energy of all translation
     spin = theory.runaway_spin(*gas)
     grown = 0.5 * 0.5 * spin**2 * np.exp(theory.cooling_rate(*gas) * growth)
     assert grown == pytest.approx(9 * particles, rel=1e-9)

@@ -1,4 +1,4 @@
-"""Stationary temperatures of mixtures: one species, conservation, and a gas without positions."""
+"""Stationary temperatures of mixtures: one species, conservation, and direct simulation."""
 
 import numpy as np
 import pytest
@@ -22,27 +22,27 @@ one_species = {
 }
 
 
-def alike(r, beta, dimension=2, q=None, mu=np.inf):
+def equal_species(r, beta, dimension=2, q=None, mu=np.inf):
     species = [{"fraction": share, "radius": 1.7, "mass": 0.4} for share in (0.2, 0.8)]
     return theory.mixture(species, r, beta, dimension, q, mu)
 
 
 @settings(derandomize=True, deadline=None, max_examples=20)
 @given(**one_species)
-def test_equal_species_cool_like_one(r, beta, q, dimension):
-    gas = alike(r, beta, dimension, q)
-    found = theory.mixture_cooling(gas, 0.1)
-    assert pytest.approx(np.ones(2), rel=1e-11) == found.T_tr
+def test_equal_species_cool_like_a_single_species(r, beta, q, dimension):
+    gas = equal_species(r, beta, dimension, q)
+    state = theory.mixture_cooling(gas, 0.1)
+    assert pytest.approx(np.ones(2), rel=1e-11) == state.T_tr
     R = theory.cooling_ratio(r, beta, dimension, q)
-    assert pytest.approx(np.full(2, R), rel=1e-10) == found.R
-    assert found.overall_ratio(gas) == pytest.approx(R, rel=1e-10)
+    assert pytest.approx(np.full(2, R), rel=1e-10) == state.R
+    assert state.overall_ratio(gas) == pytest.approx(R, rel=1e-10)
     decay = theory.mixture_decay_rate(gas, 0.1)
     assert decay == pytest.approx(theory.decay_rate(r, beta, dimension, q), abs=1e-11)
 
 
 @settings(derandomize=True, deadline=None, max_examples=15)
 @given(**one_species)
-def test_one_species_relaxes_like_one(r, beta, q, dimension):
+def test_a_mixture_of_one_species_relaxes_like_a_gas(r, beta, q, dimension):
     gas = theory.mixture([{"number": 5}], r, beta, dimension, q)
     rate = theory.mixture_relaxation_rate(gas)
     assert rate == pytest.approx(theory.relaxation_rate(r, beta, dimension, q), rel=1e-4)
@@ -50,22 +50,24 @@ def test_one_species_relaxes_like_one(r, beta, q, dimension):
 
 @settings(derandomize=True, deadline=None, max_examples=15)
 @given(**one_species, share=st.floats(0, 1))
-def test_equal_species_are_driven_like_one(r, beta, q, dimension, share):
-    gas = alike(r, beta, dimension, q)
+def test_equal_species_are_driven_like_a_single_species(r, beta, q, dimension, share):
+    gas = equal_species(r, beta, dimension, q)
     if theory.mixture_decay_rate(gas) < 1e-9:
         return
     R = theory.stationary_ratio(r, beta, dimension, q, share)
-    found = theory.mixture_driven(gas, 3 * (1 - share), spin_power=3 * share)
-    assert pytest.approx(np.full(2, R), rel=1e-8) == found.R
+    state = theory.mixture_driven(gas, 3 * (1 - share), spin_power=3 * share)
+    assert pytest.approx(np.full(2, R), rel=1e-8) == state.R
 
 
 @dimensions
 @pytest.mark.parametrize("mu", [0.2, 0.5])
-def test_equal_species_with_friction(dimension, mu):
-    gas = alike(0.9, 0.4, dimension, mu=mu)
-    about = 0.9, 0.4, mu, dimension
-    assert theory.mixture_cooling(gas).R == pytest.approx(theory.friction_ratio(*about), rel=1e-9)
-    driven = theory.friction_ratio(*about, spin_share=0.0)
+def test_equal_species_with_friction_are_like_a_single_species(dimension, mu):
+    gas = equal_species(0.9, 0.4, dimension, mu=mu)
+    gas_parameters = 0.9, 0.4, mu, dimension
+    assert theory.mixture_cooling(gas).R == pytest.approx(
+        theory.friction_ratio(*gas_parameters), rel=1e-9
+    )
+    driven = theory.friction_ratio(*gas_parameters, spin_share=0.0)
     assert theory.mixture_driven(gas, 1.0).R == pytest.approx(driven, rel=1e-9)
     T_rot = theory.mixture_rotation(gas, 1.0)
     assert T_rot / (1 + T_rot) == pytest.approx(driven, rel=1e-9)
@@ -89,8 +91,8 @@ compositions = st.lists(
 
 @settings(derandomize=True, deadline=None, max_examples=20)
 @given(species=compositions, dimension=st.sampled_from([2, 3]))
-def test_what_is_called_stationary_is(species, dimension):
-    """Whatever is mixed: growth rates in cooling gases are equal, and drives balance losses."""
+def test_stationary_states_of_mixtures_are_stationary(species, dimension):
+    """In any mixture, growth rates of a cooling gas are equal, and drives balance losses."""
     gas = theory.mixture(species, 0.9, 0, dimension)
     cooling = theory.mixture_cooling(gas, 0.1)
     chi = theory.mixture_contact_values(gas, 0.1)
@@ -109,7 +111,7 @@ def test_what_is_called_stationary_is(species, dimension):
     assert theory.mixture_rotation(gas, driven.T_tr, 0.1) == pytest.approx(driven.T_rot, rel=1e-8)
 
 
-def test_kicks_give_the_same_to_every_pair():
+def test_kicks_give_the_same_power_to_every_pair():
     gas = theory.mixture(UNLIKE, 0.9, 0)
     power = theory.kick_power(gas)
     assert gas.fraction @ power == pytest.approx(1, rel=1e-14)
@@ -120,17 +122,17 @@ def test_kicks_give_the_same_to_every_pair():
 @dimensions
 def test_elastic_mixtures_reach_equipartition(dimension):
     gas = theory.mixture(UNLIKE, 1, 1, dimension)
-    found = theory.mixture_cooling(gas)
-    assert np.concatenate(found) == pytest.approx(1, rel=1e-12)
+    state = theory.mixture_cooling(gas)
+    assert np.concatenate(state) == pytest.approx(1, rel=1e-12)
     assert theory.mixture_decay_rate(gas) == pytest.approx(0, abs=1e-14)
     with pytest.raises(InputError, match="must be what collisions can dissipate"):
         theory.mixture_driven(gas, 1)
 
 
 def test_a_smooth_intruder_is_that_of_martin_and_piasecki():
-    """One heavy smooth particle in a gas of elastic ones that are kept at T = 1: T_2/T_1 is
-    (1+r) m_2/[2 m_2 + (1-r) m_1] times that of the gas (P. A. Martin, J. Piasecki, Europhys. Lett.
-    46, 613, 1999), the ratio at which contacts with the gas leave the intruder as it is."""
+    """A heavy smooth particle in an elastic gas at T = 1: contacts with the gas leave the energy of
+    the intruder unchanged at T_2/T_1 = (1+r) m_2/[2 m_2 + (1-r) m_1] (P. A. Martin, J. Piasecki,
+    Europhys. Lett. 46, 613, 1999)."""
     species = [{"fraction": 1 - 1e-9}, {"fraction": 1e-9, "mass": 7, "restitution": 0.4}]
     gas = theory.mixture(species, 1, -1, 3)
     r = gas.restitution[0, 1]
@@ -141,41 +143,43 @@ def test_a_smooth_intruder_is_that_of_martin_and_piasecki():
 
 @dimensions
 @pytest.mark.parametrize("packing", [0.0, 0.3])
-def test_mimicry(dimension, packing):
+def test_mimicry_masses_equalise_the_temperatures(dimension, packing):
     fraction, radius = np.array([0.5, 0.3, 0.2]), np.array([1.0, 2.0, 0.4])
     mass = theory.mimicry_masses(fraction, radius, dimension, packing)
     keys = ("fraction", "radius", "mass")
     species = [
-        dict(zip(keys, one, strict=True)) for one in zip(fraction, radius, mass, strict=True)
+        dict(zip(keys, properties, strict=True))
+        for properties in zip(fraction, radius, mass, strict=True)
     ]
     for r, beta, mu in ((0.9, 0.3, np.inf), (0.6, -0.7, np.inf), (0.8, 1, 0.4)):
         gas = theory.mixture(species, r, beta, dimension, mu=mu)
-        found = theory.mixture_cooling(gas, packing)
+        state = theory.mixture_cooling(gas, packing)
         R = theory.friction_ratio(r, beta, mu, dimension)
-        assert pytest.approx(np.ones(3), rel=1e-9) == found.T_tr
-        assert pytest.approx(np.full(3, R), rel=1e-8) == found.R
-    uneven = [one | {"mass": 1.0} for one in species]
-    found = theory.mixture_cooling(theory.mixture(uneven, 0.8, 0.3, dimension), packing)
-    assert np.ptp(found.T_tr) > 0.05
+        assert pytest.approx(np.ones(3), rel=1e-9) == state.T_tr
+        assert pytest.approx(np.full(3, R), rel=1e-8) == state.R
+    uneven = [member | {"mass": 1.0} for member in species]
+    state = theory.mixture_cooling(theory.mixture(uneven, 0.8, 0.3, dimension), packing)
+    assert np.ptp(state.T_tr) > 0.05
 
 
-def without_positions(gas, seed=3):
+def simulated_state(gas, seed=3):
     """Return T_2/T_1 of a cooling gas by direct simulation, and R of both species."""
     sample = Dsmc(gas, 3000, seed, T_rot=theory.mixture_cooling(gas).T_rot.mean())
     sample.collide(25)
-    found = []
+    temperatures = []
     for _ in range(15):
         sample.collide(2)
-        found.append(np.concatenate(sample.temperatures()))
-    T_tr, T_rot = np.split(np.mean(found, axis=0), 2)
+        temperatures.append(np.concatenate(sample.temperatures()))
+    T_tr, T_rot = np.split(np.mean(temperatures, axis=0), 2)
     return T_tr[1] / T_tr[0], T_rot / (T_rot + T_tr)
 
 
+@pytest.mark.slow
 @dimensions
-def test_a_gas_without_positions_has_these_temperatures(dimension):
-    """Where hardly any energy is lost, velocities are nearly Maxwellian."""
+def test_direct_simulation_has_the_predicted_temperatures(dimension):
+    """If hardly any energy is lost, velocities are nearly Maxwellian."""
     gas = theory.mixture(UNLIKE, 0.96, 0.9, dimension)
     expected = theory.mixture_cooling(gas)
-    ratio, R = without_positions(gas)
+    ratio, R = simulated_state(gas)
     assert ratio == pytest.approx(expected.T_tr[1] / expected.T_tr[0], rel=0.05)
     assert pytest.approx(expected.R, rel=0.03) == R

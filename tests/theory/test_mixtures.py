@@ -1,10 +1,16 @@
-"""Mixtures: their structure, and what contacts between species do to energies."""
+"""Mixtures: their structure, and the energy changes of contacts between species."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.theory.collisions import after_contact, directions, drawn, drawn_spins, energies
+from tests.theory.collisions import (
+    after_contact,
+    directions,
+    energies,
+    maxwellian_spins,
+    maxwellian_velocities,
+)
 
 from roughgas import theory
 from roughgas.base import InputError
@@ -19,24 +25,24 @@ dimensions = pytest.mark.parametrize("dimension", [2, 3])
 
 
 def sampled_changes(gas, i, j, seed=0):
-    """Return the energies that a contact with j brings to a particle of i, and their errors.
+    """Return the mean energies that a particle of i gains from a contact with j, and their errors.
 
-    Normals are uniform and velocities Maxwellian; pairs count as fast as they approach.
+    Normals are uniform and velocities Maxwellian; pairs are weighted by their approach speed.
     """
     rng, D = np.random.default_rng(seed), gas.dimension
     n = directions(rng, SAMPLES, D)
 
     def particles(k):
         inertia = gas.inertia[k] * gas.mass[k] * gas.radius[k] ** 2
-        v = drawn(rng, SAMPLES, D, np.sqrt(T_TR[k] / gas.mass[k]))
-        w = drawn_spins(rng, SAMPLES, D, np.sqrt(T_ROT[k] / inertia))
+        v = maxwellian_velocities(rng, SAMPLES, D, np.sqrt(T_TR[k] / gas.mass[k]))
+        w = maxwellian_spins(rng, SAMPLES, D, np.sqrt(T_ROT[k] / inertia))
         return [v, w, *(np.full(SAMPLES, x) for x in (gas.mass[k], inertia, gas.radius[k]))]
 
-    one, two = particles(i), particles(j)
-    weight = np.maximum(-np.sum((one[0] - two[0]) * n, axis=1), 0)
+    first, second = particles(i), particles(j)
+    weight = np.maximum(-np.sum((first[0] - second[0]) * n, axis=1), 0)
     rule = gas.restitution[i, j], gas.roughness[i, j], gas.friction[i, j]
-    (v, w), _ = after_contact(n, one, two, *rule)
-    before, after = energies(*one[:4]), energies(v, w, *one[2:4])
+    (v, w), _ = after_contact(n, first, second, *rule)
+    before, after = energies(*first[:4]), energies(v, w, *first[2:4])
     weight = weight / weight.mean()
     gains = [weight * (new - old) for new, old in zip(after, before, strict=True)]
     return np.mean(gains, axis=1), np.std(gains, axis=1) / np.sqrt(SAMPLES)
@@ -54,15 +60,15 @@ def test_rates_are_those_of_sampled_contacts(dimension, beta, mu):
             expected[:, i] += nu[i, j] * energy
             error[:, i] += (nu[i, j] * spread) ** 2
     crowding = theory.mixture_contact_values(gas, 0.1)
-    found = np.array(theory.mixture_changes(gas, T_TR, T_ROT, crowding))
-    found *= np.array([[dimension], [2 * dimension - 3]]) / 2
-    assert (np.abs(found - expected) < 4 * np.sqrt(error)).all()
+    predicted = np.array(theory.mixture_changes(gas, T_TR, T_ROT, crowding))
+    predicted *= np.array([[dimension], [2 * dimension - 3]]) / 2
+    assert (np.abs(predicted - expected) < 4 * np.sqrt(error)).all()
     assert (np.sqrt(error) < 0.04 * np.abs(expected).max(axis=1, keepdims=True)).all()
 
 
-def alike(number, **about):
+def equal_species(number, **properties):
     shares = np.arange(1, number + 1) / (number * (number + 1) / 2)
-    return [{"fraction": share} | about for share in shares]
+    return [{"fraction": share} | properties for share in shares]
 
 
 @settings(derandomize=True, deadline=None, max_examples=60)
@@ -74,24 +80,26 @@ def alike(number, **about):
     size=st.floats(0.1, 10),
     mu=st.sampled_from([np.inf, 1.0, 0.2]),
 )
-def test_equal_species_have_the_rates_of_one(r, beta, q, dimension, size, mu):
-    gas = theory.mixture(alike(3, radius=size, mass=1 / size), r, beta, dimension, q, mu)
+def test_equal_species_have_the_rates_of_a_single_species(r, beta, q, dimension, size, mu):
+    gas = theory.mixture(equal_species(3, radius=size, mass=1 / size), r, beta, dimension, q, mu)
     changes = theory.mixture_changes(gas, np.full(3, 1.3), np.full(3, 0.7))
     nu = theory.mixture_frequency(gas, 1.3, 0.1)
     rate = theory.mixture_density(gas, 0.1) / nu.sum(axis=1)
     crowding = theory.mixture_contact_values(gas, 0.1)
     expected = theory.friction_changes(1.3, 0.7, r, beta, mu, dimension, q)
-    for found, one in zip(changes, expected, strict=True):
-        assert found * rate * crowding[0, 0] == pytest.approx(np.full(3, one), abs=1e-13)
+    for change, expected_change in zip(changes, expected, strict=True):
+        assert change * rate * crowding[0, 0] == pytest.approx(
+            np.full(3, expected_change), abs=1e-13
+        )
 
 
 @dimensions
 @pytest.mark.parametrize("beta", [-1, 1])
 def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta):
-    elastic = [one | {"restitution": 1.0} for one in UNLIKE]
+    elastic = [species | {"restitution": 1.0} for species in UNLIKE]
     gas = theory.mixture(elastic, 1, beta, dimension)
     tr, rot = theory.mixture_changes(gas, T_TR, T_ROT)
-    assert np.abs(tr).min() > 0.1  # while each species gains or loses
+    assert np.abs(tr).min() > 0.1  # each species gains or loses
     change = gas.fraction @ (dimension * tr + (2 * dimension - 3) * rot)
     assert change == pytest.approx(0, abs=1e-12)
     changes = np.array(theory.mixture_changes(gas, [2, 2], [2, 2]))
@@ -100,23 +108,25 @@ def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta
 
 @pytest.mark.parametrize("kind", ["uniform", "lognormal"])
 def test_a_distribution_has_its_moments(kind):
-    """As radii that are drawn have them; masses are those of one density, unless given."""
+    """As sampled radii have; masses follow from one density, unless stated."""
     radius = {"distribution": kind, "deviation": 0.2, "mean": 1.5}
     species = [{"fraction": 0.4, "radius": radius}, {"fraction": 0.6, "mass": 3}]
     gas = theory.mixture(species, 0.9, 0)
-    mine = gas.part_of == 0
-    share = gas.fraction[mine] / 0.4
+    in_first = gas.species_of == 0
+    share = gas.fraction[in_first] / 0.4
     rng = np.random.default_rng(1)
     width = np.sqrt(np.log(1.04))
-    drawn = {
+    sampled_radii = {
         "uniform": 1.5 * (1 + np.sqrt(3) * 0.2 * rng.uniform(-1, 1, 400_000)),
         "lognormal": 1.5 * np.exp(width * rng.standard_normal(400_000) - width**2 / 2),
     }[kind]
     assert share.sum() == pytest.approx(1, rel=1e-14)
     for power in (1, 2, 3, 5):
-        assert share @ gas.radius[mine] ** power == pytest.approx((drawn**power).mean(), rel=0.01)
-    assert share @ gas.mass[mine] == pytest.approx(1.5**2 * 1.04, rel=1e-9)
-    assert (gas.mass[~mine] == 3).all()
+        assert share @ gas.radius[in_first] ** power == pytest.approx(
+            (sampled_radii**power).mean(), rel=0.01
+        )
+    assert share @ gas.mass[in_first] == pytest.approx(1.5**2 * 1.04, rel=1e-9)
+    assert (gas.mass[~in_first] == 3).all()
 
 
 def test_a_list_of_radii_is_a_distribution(tmp_path):
@@ -128,13 +138,13 @@ def test_a_list_of_radii_is_a_distribution(tmp_path):
     assert theory.mixture([{"fraction": 1, "radius": of_file}], 0.9, 0).radius == pytest.approx(
         [1, 3]
     )
-    many = np.linspace(1, 3, 1001)
-    gas = theory.mixture([{"fraction": 1, "radius": many.tolist()}], 0.9, 0)
+    radii = np.linspace(1, 3, 1001)
+    gas = theory.mixture([{"fraction": 1, "radius": radii.tolist()}], 0.9, 0)
     assert len(gas.radius) == 12
-    assert gas.fraction @ gas.radius**2 == pytest.approx((many**2).mean(), rel=1e-3)
+    assert gas.fraction @ gas.radius**2 == pytest.approx((radii**2).mean(), rel=1e-3)
 
 
-def test_pairs_have_what_they_are_given():
+def test_pairs_have_the_coefficients_stated_for_them():
     species = [{"fraction": 0.5, "name": "steel"}, {"fraction": 0.5, "name": "glass"}]
     pairs = [{"between": ["glass", "steel"], "restitution": 0.5}, {"between": [1, 1], "mu": 0.2}]
     gas = theory.mixture(species, 0.9, 0, pairs=pairs[:1])
@@ -145,7 +155,7 @@ def test_pairs_have_what_they_are_given():
         theory.mixture(species, 0.9, 0, pairs=[{"between": ["wood", "steel"]}])
 
 
-def test_unlike_partners_meet_half_way():
+def test_unlike_partners_have_mean_coefficients():
     species = [{"fraction": 0.5}, {"fraction": 0.5, "restitution": 0.7, "roughness": 1, "mu": 0.3}]
     gas = theory.mixture(species, 0.9, 0, mu=0.1)
     assert gas.restitution == pytest.approx(np.array([[0.9, 0.8], [0.8, 0.7]]))
@@ -169,18 +179,18 @@ def elastic(dimension, species=SPECIES):
 @packings
 def test_equal_radii_have_the_contact_value_of_one_species(dimension, packing):
     gas = elastic(dimension, [{"fraction": 0.3, "radius": 2}, {"fraction": 0.7, "radius": 2}])
-    one = theory.contact_value(packing, dimension)
-    found = theory.mixture_contact_values(gas, packing)
-    assert found == pytest.approx(np.full((2, 2), one), rel=1e-14)
+    contact_value = theory.contact_value(packing, dimension)
+    contact_values = theory.mixture_contact_values(gas, packing)
+    assert contact_values == pytest.approx(np.full((2, 2), contact_value), rel=1e-14)
 
 
 @packings
 def test_disks_obey_the_equation_of_santos_yuste_and_lopez_de_haro(packing):
-    """Z = 1/(1-phi) + <a>^2/<a^2> [Z_1 - 1/(1-phi)], Z_1 that of equal disks (Henderson)."""
+    """Z = 1/(1-phi) + <a>^2/<a^2> [Z_1 - 1/(1-phi)], Z_1 of equal disks (Henderson)."""
     gas = elastic(2)
-    one = 1 + 2 * packing * theory.contact_value(packing, 2)
+    equal_disks = 1 + 2 * packing * theory.contact_value(packing, 2)
     spread = (gas.fraction @ gas.radius) ** 2 / (gas.fraction @ gas.radius**2)
-    expected = 1 / (1 - packing) + spread * (one - 1 / (1 - packing))
+    expected = 1 / (1 - packing) + spread * (equal_disks - 1 / (1 - packing))
     assert theory.compressibility(gas, packing) == pytest.approx(expected, rel=1e-14)
 
 
@@ -194,8 +204,8 @@ def test_spheres_obey_the_equation_of_boublik_and_mansoori(packing):
 
 
 @dimensions
-def test_a_tiny_particle_meets_walls_that_are_flat(dimension):
-    """A point meets any other as often as there is room for it: chi = 1/(1 - phi), exactly."""
+def test_the_contact_value_of_a_point_is_the_inverse_of_the_free_volume(dimension):
+    """A point may be anywhere in the free volume: chi = 1/(1 - phi), exactly."""
     gas = elastic(dimension, [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1e-12}])
     chi = theory.mixture_contact_values(gas, 0.4)[0, 1]
     assert chi == pytest.approx(1 / 0.6, rel=1e-10)
@@ -203,8 +213,8 @@ def test_a_tiny_particle_meets_walls_that_are_flat(dimension):
 
 @dimensions
 def test_third_virial_coefficient_of_points_and_disks_is_exact(dimension):
-    """Contact values to first order in the density: 1 + n times the room in which both partners of
-    a contact touch a third particle, here by sampling."""
+    """Contact values to first order in the density: 1 + n times the volume where a third particle
+    touches both partners of a contact, here by sampling."""
     gas, rng, size = elastic(dimension), np.random.default_rng(1), 400_000
     i, j, small = 1, 2, 1e-6
     third = gas.distance[i].max() * (2 * rng.random((size, dimension)) - 1)

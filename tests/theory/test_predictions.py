@@ -1,4 +1,4 @@
-"""What theory predicts of a dataset; sheared and viscoelastic gases."""
+"""Predictions of theory for datasets; sheared and viscoelastic gases."""
 
 import json
 import math
@@ -37,7 +37,7 @@ FRICTION = "rate equations with Coulomb friction"
         ),
     ],
 )
-def test_the_equation_follows_from_what_a_dataset_says(attributes, variables, equation):
+def test_the_equation_follows_from_the_attributes_of_a_dataset(attributes, variables, equation):
     assert equation_of(attributes, variables) == Equation(*equation)
 
 
@@ -45,32 +45,32 @@ ALIKE = [{"fraction": 0.3}, {"fraction": 0.7, "name": "rest"}]
 SPECIES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2, "mass": 4, "name": "heavy"}]
 
 
-def attributes(species=SPECIES, kind="K", **others):
-    known = {"species": species, "species_pairs": [], "volume": 1e4}
-    about = {"dimension": 2, "inertia": 0.5, "particles": 160, "theory": kind}
-    return about | {"species_json": json.dumps(known)} | others
+def attributes(species=SPECIES, kind="K", **changes):
+    description = {"species": species, "species_pairs": [], "volume": 1e4}
+    common = {"dimension": 2, "inertia": 0.5, "particles": 160, "theory": kind}
+    return common | {"species_json": json.dumps(description)} | changes
 
 
-@pytest.mark.parametrize("others", [{}, {"mu": 0.4}, {"spin_share": 0.3}])
+@pytest.mark.parametrize("changes", [{}, {"mu": 0.4}, {"spin_share": 0.3}])
 @pytest.mark.parametrize("kind", ["K", "lun"])
-def test_equal_species_are_predicted_as_one(kind, others):
+def test_equal_species_are_predicted_as_a_single_species(kind, changes):
     r, beta = np.meshgrid([0.8, 0.9], [-0.5, 0.0, 1.0])
-    found = predicted_ratio(attributes(ALIKE, kind, **others), r, beta)
-    one = {"dimension": 2, "inertia": 0.5, "theory": kind} | others
-    assert found == pytest.approx(predicted_ratio(one, r, beta), rel=1e-8)
+    ratios = predicted_ratio(attributes(ALIKE, kind, **changes), r, beta)
+    single = {"dimension": 2, "inertia": 0.5, "theory": kind} | changes
+    assert ratios == pytest.approx(predicted_ratio(single, r, beta), rel=1e-8)
 
 
-def test_a_cooling_mixture_has_its_packing():
+def test_a_cooling_mixture_is_predicted_at_its_packing():
     gas = theory.mixture(SPECIES, 0.9, 0.2)
     expected = theory.mixture_cooling(gas, 160 * np.pi * 2.5 / 1e4).overall_ratio(gas)
     assert predicted_ratio(attributes(), 0.9, 0.2) == pytest.approx(expected, rel=1e-12)
 
 
-def test_what_is_swept_is_put_in_its_place():
+def test_swept_values_replace_those_of_the_species():
     swept = attributes(swept="species.heavy.mass", mass=np.array([1.0, 9.0]))
-    found = predicted_ratio(swept, 0.9, 0.2)
+    ratios = predicted_ratio(swept, 0.9, 0.2)
     heavier = [SPECIES[0], SPECIES[1] | {"mass": 9.0}]
-    assert found[1] == pytest.approx(predicted_ratio(attributes(heavier), 0.9, 0.2), rel=1e-12)
+    assert ratios[1] == pytest.approx(predicted_ratio(attributes(heavier), 0.9, 0.2), rel=1e-12)
     spread = [{"fraction": 1, "radius": {"distribution": "uniform", "deviation": 0.1}}]
     swept = attributes(spread, swept="species.0.deviation", deviation=np.array([0.0, 0.2]))
     alike, apart = predicted_ratio(swept, 0.8, -0.5)
@@ -98,18 +98,18 @@ DIRECTIONS = 720
 
 
 def flux_moments(mean, sigma):
-    """(mean, mean square) of x ~ N(mean, sigma^2), weighted by x where it is positive."""
+    """Return <x> over x > 0, x ~ N(mean, sigma^2), and mean and mean square weighted by such x."""
     z = mean / sigma
     below = 0.5 * (1.0 + np.vectorize(math.erf)(z / math.sqrt(2.0)))
     density = np.exp(-z * z / 2.0) / math.sqrt(2.0 * math.pi)
-    one = mean * below + sigma * density
-    two = (mean**2 + sigma**2) * below + mean * sigma * density
-    three = (mean**3 + 3.0 * mean * sigma**2) * below + (mean**2 + 2 * sigma**2) * sigma * density
-    return one, two / one, three / one
+    first = mean * below + sigma * density
+    second = (mean**2 + sigma**2) * below + mean * sigma * density
+    third = (mean**3 + 3.0 * mean * sigma**2) * below + (mean**2 + 2 * sigma**2) * sigma * density
+    return first, second / first, third / first
 
 
 def theta(beta, q, rate, stress, difference):
-    """T_rot/T_tr from the balance of spin at contacts, all orders, by a sum over directions.
+    """Return T_rot/T_tr from the spin balance at contacts, in all orders, by a sum over directions.
 
     Relative velocities are Gaussian with twice the tensor of temperatures, about the mean flow.
     """
@@ -117,24 +117,22 @@ def theta(beta, q, rate, stress, difference):
     n = np.stack([np.cos(angle), np.sin(angle)])
     t = np.stack([-n[1], n[0]])
     tensor = 2.0 * np.array([[1.0 + difference, -stress], [-stress, 1.0 - difference]])
-    nn, nt, tt = (
-        np.einsum("ik,ij,jk->k", one, tensor, two) for one, two in ((n, n), (n, t), (t, t))
-    )
+    nn, nt, tt = (np.einsum("ik,ij,jk->k", u, tensor, v) for u, v in ((n, n), (n, t), (t, t)))
     flow_n, flow_t = 2.0 * rate * n[1] * n[0], -2.0 * rate * n[1] ** 2
     weight, approach, square = flux_moments(-flow_n, np.sqrt(nn))
     weight /= weight.sum()
-    own = -approach - flow_n  # mean of the normal velocity without the flow
-    own_square = square + 2.0 * flow_n * approach + flow_n**2
+    thermal = -approach - flow_n  # mean of the normal velocity without the flow
+    thermal_square = square + 2.0 * flow_n * approach + flow_n**2
     slope = nt / nn
-    along = slope * own + flow_t
-    v_t2 = slope**2 * own_square + tt - nt**2 / nn + 2.0 * slope * own * flow_t + flow_t**2
+    along = slope * thermal + flow_t
+    v_t2 = slope**2 * thermal_square + tt - nt**2 / nn + 2.0 * slope * thermal * flow_t + flow_t**2
     spin = rate  # v_r due to the mean spin, -rate/2 of each partner
     c1, c2, c3 = 1.0 + beta, 2.0 * (q - beta), 1.0 + 2.0 * q - beta
     v_r2 = (c1 * (weight * v_t2).sum() - c2 * spin * (weight * along).sum()) / c3
     return (v_r2 - spin**2) * q / 2.0
 
 
-def test_without_flow_and_stress_it_is_eq_lun():
+def test_the_integral_without_flow_and_stress_is_eq_lun():
     assert shear_factor(0, 0, 0) == 1
     lun = theory.lun_ratio(0.3, 0.4)
     assert theta(0.3, 0.4, 0, 0, 0) == pytest.approx(lun / (1 - lun), rel=1e-12)
@@ -142,17 +140,17 @@ def test_without_flow_and_stress_it_is_eq_lun():
 
 @pytest.mark.parametrize("beta", [-0.7, 0.0, 1.0])
 @pytest.mark.parametrize("q", [0.1, 0.5, 1.0])
-@pytest.mark.parametrize("of", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0.7, 1, -0.6)])
-def test_it_is_the_second_order_of_the_integral(beta, q, of):
-    """What is left over falls at least as the third power of g, p and d."""
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0.7, 1, -0.6)])
+def test_the_shear_factor_is_the_second_order_of_the_integral(beta, q, direction):
+    """The remainder falls at least with the third power of g, p and d."""
     lun = theory.lun_ratio(beta, q)
-    rests = []
+    remainders = []
     for size in (0.08, 0.04):
-        g, p, d = size * np.array(of)
+        g, p, d = size * np.array(direction)
         exact = theta(beta, q, g, p, d) * (1 - lun) / lun
-        rests.append(abs(exact - shear_factor(g, p, d)))
-        assert rests[-1] < 0.5 * size**3
-    assert rests[1] < rests[0] / 7 + 1e-12
+        remainders.append(abs(exact - shear_factor(g, p, d)))
+        assert remainders[-1] < 0.5 * size**3
+    assert remainders[1] < remainders[0] / 7 + 1e-12
 
 
 SPEEDS = np.geomspace(1e-4, 1e4, 9)
@@ -160,9 +158,9 @@ SPEEDS = np.geomspace(1e-4, 1e4, 9)
 
 @pytest.mark.parametrize("r", [0.05, 0.5, 0.9, 0.9999])
 def test_restitution_is_that_of_the_kernel(r):
-    found = theory.viscoelastic_restitution(SPEEDS, r, 3.0)
+    restitution = theory.viscoelastic_restitution(SPEEDS, r, 3.0)
     expected = [pade(x_of(r) * (g / 3.0) ** 0.2) for g in SPEEDS]
-    assert found == pytest.approx(expected, rel=1e-12)
+    assert restitution == pytest.approx(expected, rel=1e-12)
     assert theory.viscoelastic_restitution(3.0, r, 3.0) == pytest.approx(r, rel=1e-13)
 
 
@@ -170,10 +168,10 @@ def test_maxwellian_restitution_is_an_average_over_contacts():
     """Of a million normal speeds, whose squares over 4 T_tr are exponential."""
     T, r, speed = 2.3, 0.7, 0.5
     g = np.sqrt(4.0 * T * np.random.default_rng(1).exponential(size=10**6))
-    lost = (1.0 - theory.viscoelastic_restitution(g, r, speed) ** 2) * g**2 / (4.0 * T)
-    error = lost.std() / 1e3
-    found = 1.0 - theory.maxwellian_restitution(T, r, speed) ** 2
-    assert abs(found - lost.mean()) < 4.0 * error < 0.01 * found
+    losses = (1.0 - theory.viscoelastic_restitution(g, r, speed) ** 2) * g**2 / (4.0 * T)
+    error = losses.std() / 1e3
+    predicted_loss = 1.0 - theory.maxwellian_restitution(T, r, speed) ** 2
+    assert abs(predicted_loss - losses.mean()) < 4.0 * error < 0.01 * predicted_loss
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -7,13 +7,13 @@ import pytest
 
 from roughgas import theory
 from roughgas.theory.relaxation import (
-    hits_of_floor,
-    hits_of_wall,
+    floor_hit_frequency,
     ratio_relaxation,
     slopes,
     slowest_relaxation,
     thermal_wall_slopes,
     viscous_decay,
+    wall_hit_frequency,
     wall_slopes,
 )
 
@@ -37,7 +37,7 @@ def test_one_temperature_has_no_ratio_that_relaxes():
     assert ratio_relaxation(np.array([[-1.0]]), np.ones(1), np.ones(1)) == math.inf
 
 
-def test_what_grows_has_no_relaxation():
+def test_growing_temperatures_have_no_relaxation_time():
     assert slowest_relaxation(np.array([[0.1, 0.0], [0.0, -1.0]])) == 0.0
 
 
@@ -68,11 +68,11 @@ def test_a_perfectly_rough_elastic_wall_conserves_energy(dimension):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_hits_of_a_rough_wall_by_brute_force(dimension):
+def test_slopes_of_a_rough_wall_are_those_of_sampled_hits(dimension):
     """A million hits in a Maxwellian gas: 4 standard errors, by chance once in 3000 tests."""
     rng, q, T_tr, T_rot, r, beta = np.random.default_rng(5), 0.4, 1.3, 0.6, 0.8, 0.3
     hits, axes, spin_axes = 1_000_000, dimension - 1, 2 * dimension - 3
-    normal = np.sqrt(-2.0 * T_tr * np.log(rng.random(hits)))  # of those that hit
+    normal = np.sqrt(-2.0 * T_tr * np.log(rng.random(hits)))  # of particles that hit
     v = math.sqrt(T_tr) * rng.standard_normal((axes, hits))
     w = math.sqrt(T_rot / q) * rng.standard_normal((spin_axes, hits))
     slip = v + w[:axes]  # a sign of the cross product changes no average
@@ -86,15 +86,15 @@ def test_hits_of_a_rough_wall_by_brute_force(dimension):
 
 
 def test_a_thermal_wall_keeps_nothing_of_what_hits_it():
-    """Those that hit it have (D + 1) T_tr/2 of translational energy on average, of D T_tr/2."""
+    """Particles that hit it have a mean translational energy of (D + 1) T_tr/2, not of D T_tr/2."""
     assert thermal_wall_slopes(2) == pytest.approx(np.diag([-1.5, -1.0]))
     assert thermal_wall_slopes(3) == pytest.approx(np.diag([-4.0 / 3.0, -1.0]))
 
 
-def test_hits_of_walls_and_floors_and_viscosity():
+def test_hit_frequencies_and_viscous_decay_are_those_of_kinetic_theory():
     """A gas of temperature 1 in a box of length 10; a floor under gravity 1; disks with nu = 2."""
-    assert hits_of_wall(1.0, 10.0) == pytest.approx(0.039894, rel=1e-4)
-    pressure = hits_of_floor(1.0, 1.0) * 2.0 * math.sqrt(math.pi / 2.0)
+    assert wall_hit_frequency(1.0, 10.0) == pytest.approx(0.039894, rel=1e-4)
+    pressure = floor_hit_frequency(1.0, 1.0) * 2.0 * math.sqrt(math.pi / 2.0)
     assert pressure == pytest.approx(1.0)  # it bears the weight
     nu = float(theory.collision_frequency(1.0, 0.01, 2))
     kinematic = viscous_decay(1.0, nu, 2.0 * math.pi)

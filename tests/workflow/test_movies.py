@@ -7,7 +7,7 @@ TINY = ("--config", "scale=tiny", "--")
 
 
 @pytest.mark.slow
-def test_one_is_made(project, tmp_path):
+def test_a_movie_is_made_with_its_gif(project, tmp_path):
     copy = project.copy_to(tmp_path / "copy")
     committed = copy.folder / "figures/tiny/movies/cooling.gif"
     committed.parent.mkdir(parents=True)
@@ -18,12 +18,12 @@ def test_one_is_made(project, tmp_path):
 
 
 PRODUCTS = {f"figures/tiny/clustering.{kind}" for kind in ("pdf", "png", "mp4")}
-MADE = ("tasks/film.nc", "data.nc", "data.md", "page.html")
-PRODUCTS |= {f"results/tiny/clustering/{one}" for one in MADE}
+RESULTS = ("tasks/film.nc", "data.nc", "data.md", "page.html")
+PRODUCTS |= {f"results/tiny/clustering/{name}" for name in RESULTS}
 
 
 @pytest.mark.slow
-def test_the_products_are_there(project, tmp_path):
+def test_a_film_of_a_large_gas_has_all_its_products(project, tmp_path):
     ran = project.copy_to(tmp_path / "ran")
     ran.succeed("-j1", *TINY, "clustering")
     products = {path for path in ran.files() if path.startswith(("figures", "results"))}

@@ -30,15 +30,15 @@ def points(project):
     return sorted(project.folder.glob("results/tiny/*/*/*/*.nc"))
 
 
-def same_numbers(one, other):
-    """Whether two datasets are equal to the last bit, but for the time that they took."""
-    one, other = read_point(one), read_point(other)
-    return one.drop_vars(WALL_CLOCK, errors="ignore").identical(
-        other.drop_vars(WALL_CLOCK, errors="ignore")
+def same_numbers(first, second):
+    """Return whether two files of points are equal to the last bit, apart from run times."""
+    first, second = read_point(first), read_point(second)
+    return first.drop_vars(WALL_CLOCK, errors="ignore").identical(
+        second.drop_vars(WALL_CLOCK, errors="ignore")
     )
 
 
-def test_the_products_are_there(undisturbed):
+def test_a_run_makes_all_products_of_the_paper(undisturbed):
     assert len(points(undisturbed)) == POINTS
     products = {path for path in undisturbed.files() if path.startswith(("figures", "results"))}
     for figure in ("fig1a", "fig1b", "fig2a", "fig2b"):
@@ -66,7 +66,7 @@ def test_a_run_is_packed_with_all_that_it_takes_to_repeat_it(undisturbed, tmp_pa
     assert {"results/tiny/R.csv", "results/tiny/claims.md", "figures/tiny/fig1a.png"} <= results
     configuration = json.loads((tmp_path / "crate/configuration.json").read_text())
     assert configuration["scale"] == "tiny" and configuration["scales"]["tiny"]
-    # what is in the crate, and nothing else, makes a point again
+    # the contents of the crate alone reproduce a point
     point = points(undisturbed)[0]
     command = [sys.executable, "-m", *shlex.split(read_point(point).attrs["command"])]
     command[-1] = "point.nc"
@@ -84,12 +84,12 @@ def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undis
         time.sleep(0.01)
     running.kill()
     running.wait()
-    found = {path: path.stat().st_mtime_ns for path in points(killed)}
-    assert 0 < len(found) < POINTS
+    write_times = {path: path.stat().st_mtime_ns for path in points(killed)}
+    assert 0 < len(write_times) < POINTS
     killed.succeed("-j1", *TARGET)
-    kept = [path for path, when in found.items() if path.stat().st_mtime_ns == when]
-    again = 2 * 2 * SWEEP["seeds"]  # two jobs were at work, and two may have been finished since
-    assert len(kept) >= len(found) - again
+    unchanged = [path for path, when in write_times.items() if path.stat().st_mtime_ns == when]
+    remade_limit = 2 * 2 * SWEEP["seeds"]  # two jobs at work, and two that may have finished since
+    assert len(unchanged) >= len(write_times) - remade_limit
     for path in points(undisturbed):
         remade = killed.folder / path.relative_to(undisturbed.folder)
         assert same_numbers(path, remade), path

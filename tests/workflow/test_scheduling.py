@@ -1,4 +1,4 @@
-"""Snakemake's timers of jobs per second, which a long run must not pile up."""
+"""Snakemake's timers of jobs per second, which a long run must not accumulate."""
 
 import re
 import shlex
@@ -6,12 +6,11 @@ import subprocess
 import sys
 
 import pytest
-from project import ROOT
 
 JOBS = 40
 WORKFLOW = """
 import threading
-include: "{rules}"
+from roughgas.workflow.internals import remove_job_rate_limit
 rule all:
     input: expand("{{job}}.done", job=range({jobs}))
 rule one:
@@ -29,37 +28,35 @@ def threads_at_the_end(folder, start):
 
     The jobs run one after another: a pass of the scheduler takes all that end together.
     """
-    rules = ROOT / "rules" / "messages.smk"
-    (folder / "Snakefile").write_text(
-        "import sys\n" + WORKFLOW.format(rules=rules, jobs=JOBS, start=start)
-    )
+    (folder / "Snakefile").write_text("import sys\n" + WORKFLOW.format(jobs=JOBS, start=start))
     command = [sys.executable, "-m", "snakemake", "-j1", "--quiet", "all"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
     return int(re.search(r"threads: (\d+)", done.stderr)[1])
 
 
 @pytest.mark.slow
-def test_timers_do_not_pile_up(tmp_path):
-    assert threads_at_the_end(tmp_path, "start_jobs_at_once(workflow)") < 10
+def test_timers_do_not_accumulate(tmp_path):
+    assert threads_at_the_end(tmp_path, "remove_job_rate_limit(workflow)") < 10
 
 
 @pytest.mark.slow
-def test_timers_pile_up_in_the_installed_snakemake(tmp_path):
-    """Once this fails, Snakemake has mended it: `start_jobs_at_once` may go."""
+def test_timers_accumulate_in_the_installed_snakemake(tmp_path):
+    """Once this fails, Snakemake has mended it: `remove_job_rate_limit` may go."""
     assert threads_at_the_end(tmp_path, "pass") > JOBS / 2
 
 
-def test_a_run_tells_what_is_ready(project, tmp_path):
+@pytest.mark.slow
+def test_a_run_lists_the_files_that_are_ready(project, tmp_path):
     ran = project.copy_to(tmp_path / "project")
-    told = ("-c1", "--config", "scale=tiny", "--", "results/tiny/config.html")
-    lines = ran.succeed(*told).splitlines()
+    arguments = ("-c1", "--config", "scale=tiny", "--", "results/tiny/config.html")
+    lines = ran.succeed(*arguments).splitlines()
     assert "ready: results/tiny/config.html" in lines and len(lines) < 20
     assert not any("localrule" in line or "jobid" in line for line in lines)
 
 
 @pytest.mark.slow
 def test_a_run_counts_its_points(project, tmp_path):
-    """In a terminal, too, since a bar is drawn there."""
+    """In a terminal, for which the progress bar is drawn."""
     ran = project.copy_to(tmp_path / "project")
     point = "results/tiny/cooling/r0.9/beta0/seed7.nc"
     command = [sys.executable, "-m", "snakemake", "-j1", "--config", "scale=tiny", "--", point]
@@ -67,4 +64,4 @@ def test_a_run_counts_its_points(project, tmp_path):
     terminal = ["script", "--quiet", "--return", "--command", typed, "/dev/null"]
     done = subprocess.run(terminal, cwd=ran.folder, capture_output=True, text=True, check=True)
     assert re.search(r"tiny: 100%\|.*1 of 1 points", done.stdout)
-    assert re.search(r"tiny: +[1-9]\d?%\|[^|]*\| 0 of 1 points", done.stdout)  # its kernel is there
+    assert re.search(r"tiny: +[1-9]\d?%\|[^|]*\| 0 of 1 points", done.stdout)  # a kernel is done

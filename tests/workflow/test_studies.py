@@ -1,10 +1,12 @@
-"""Studies as Snakemake makes them: copied, deleted, broken, and as short as can be."""
+"""Studies as Snakemake makes them: copied, broken, minimal and hostile ones."""
 
 import shutil
 
+import hostile
 import pytest
+from hostile import ATTACK
 
-LEAST = """\
+MINIMAL_STUDY = """\
 experiments:
   steep:
     extends: vibrated
@@ -14,13 +16,13 @@ scales:
   small:
     steep: {sweep: {seeds: 1}}
 """
-MADE = {"study_figure": 1, "study_table": 1, "study_claims": 1, "study_page": 1}
+JOBS_OF_STUDY = {"figure": 1, "table": 1, "claims": 1, "study_page": 1}
 TINY = ("--config", "scale=tiny", "--")
 
 
 @pytest.fixture
-def own(project, tmp_path):
-    """A project of one's own, and a function that adds a study to it."""
+def study_project(project, tmp_path):
+    """A copy of the project, with a method `add` that adds a study."""
     copy = project.copy_to(tmp_path / "own")
 
     def add(name, text):
@@ -32,43 +34,54 @@ def own(project, tmp_path):
     return copy
 
 
-def test_a_copy_of_a_study_is_another(own):
-    studies = own.folder / "studies"
+def test_a_copied_study_is_planned_as_another(study_project):
+    studies = study_project.folder / "studies"
     shutil.copytree(studies / "friction", studies / "mine")
-    planned = own.planned("mine")
-    assert {rule: planned[rule] for rule in MADE} == MADE
+    planned = study_project.planned("mine")
+    assert {rule: planned[rule] for rule in JOBS_OF_STUDY} == JOBS_OF_STUDY
     assert planned["reduce"] == 2 and planned["mine"] == 1
 
 
-def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(own):
-    own.add("broken", "experiments: {x: {extends: vibrated, particles: -3}}")
-    own.add("unread", LEAST)
-    (own.folder / "studies" / "unread" / "figure.py").write_text("def draw(:\n")
-    own.add("unnamed", "tasks: {experiments: [cooling]}")
-    own.add("uncombined", "tasks: {experiments: [cooling]}")
-    (own.folder / "studies" / "uncombined" / "tasks.py").write_text(
+@pytest.mark.slow
+def test_a_broken_study_is_refused_in_one_line_and_all_others_are_made(study_project):
+    study_project.add("broken", "experiments: {x: {extends: vibrated, particles: -3}}")
+    study_project.add("unread", MINIMAL_STUDY)
+    (study_project.folder / "studies" / "unread" / "figure.py").write_text("def draw(:\n")
+    study_project.add("unnamed", "tasks: {experiments: [cooling]}")
+    study_project.add("uncombined", "tasks: {experiments: [cooling]}")
+    (study_project.folder / "studies" / "uncombined" / "tasks.py").write_text(
         "tasks = lambda settings: ['a']\n"
     )
-    (own.folder / "studies" / "uncombined" / "results.py").write_text("def combine(:\n")
+    (study_project.folder / "studies" / "uncombined" / "results.py").write_text("def combine(:\n")
     for name in ("tasks", "results"):
-        (own.folder / "studies" / "unnamed" / f"{name}.py").write_text("import absent\n")
-    status, output = own.snakemake("-n", *TINY, "extensions")
+        (study_project.folder / "studies" / "unnamed" / f"{name}.py").write_text("import absent\n")
+    status, output = study_project.snakemake("-n", *TINY, "extensions")
     line = (
         "studies/unnamed/tasks.py = ModuleNotFoundError: No module named 'absent': must be Python"
     )
     assert status == 0 and f"{line} (left out; all else can be made)" in output
     assert "studies/uncombined/results.py = SyntaxError: " in output
-    status, output = own.snakemake("-n", *TINY, "broken")
+    status, output = study_project.snakemake("-n", *TINY, "broken")
     line = "roughgas: error: studies/broken/config.yaml: experiments.x.particles = -3: must be"
     assert status == 1 and line in output and "Traceback" not in output
 
 
 @pytest.mark.slow  # compiles a kernel
-def test_the_least_study_has_data_a_figure_a_table_and_a_page(own):
-    own.add("least", LEAST)
-    own.succeed("-j1", *TINY, "least")
-    made = own.files()
-    assert {"figures/tiny/least.steep.png", "results/tiny/least.steep.nc"} <= made
-    assert {f"results/tiny/least/{name}" for name in ("R.csv", "page.html")} <= made
-    page = (own.folder / "results/tiny/least/page.html").read_text()
+def test_a_minimal_study_has_data_a_figure_a_table_and_a_page(study_project):
+    study_project.add("least", MINIMAL_STUDY)
+    study_project.succeed("-j1", *TINY, "least")
+    files = study_project.files()
+    assert {"figures/tiny/least.steep.png", "results/tiny/least.steep.nc"} <= files
+    assert {f"results/tiny/least/{name}" for name in ("R.csv", "page.html")} <= files
+    page = (study_project.folder / "results/tiny/least/page.html").read_text()
     assert "<h1>Least</h1>" in page and "data:image/png" in page and "least.steep" in page
+
+
+@pytest.mark.slow  # compiles a kernel
+def test_texts_of_a_study_stay_text_in_the_report_of_snakemake(study_project):
+    """Labels, captions and params stand within a script of the report."""
+    report = hostile.report_of(study_project).read_text()
+    assert ATTACK not in report and 'href=\\"javascript:alert' not in report
+    assert "alert(1)" in report and not (study_project.folder / "harmed").exists()
+    page = (study_project.folder / "results/tiny/hostile/page.html").read_text()
+    assert ATTACK not in page and "alert(1)" in page

@@ -1,22 +1,20 @@
-"""What can be asked for, and how the rest is refused."""
+"""Legal targets of Snakemake, and refusals of illegal ones."""
 
 import pytest
 from project import BEYOND, JOBS, Project
 
 ILLEGAL = {
-    ("results/paper/cooling/r1.5/beta0/seed1.nc",): "restitution r = 1.5: must lie in [0, 1]",
-    ("results/paper/heating/r0.9/beta0/seed1.nc",): "experiment = 'heating': must be one of clu",
     ("figures/fig9.png",): "figure = 'fig9': must be a figure or an experiment, such as fig2b, fi",
     ("figures/movies/flow.gif",): "movie = flow: must be one of vibrated, ",
     ("--config", "n_particles=5"): "key = 'n_particles': must be one of accuracy, betas_per_job,",
 }
 
 QUICK = (("figures/fig9.png",), ("--config", "n_particles=5"))
-"""The others are refused in the same way, and are slow."""
+"""Fast cases; all others are refused by the same code, and are slow."""
 
 
 def refusal(project, *arguments):
-    """The one line in which Snakemake refuses."""
+    """Return the single error line of a refusal by Snakemake."""
     before = project.files()
     status, output = project.snakemake("-j1", *arguments)
     assert status != 0
@@ -41,14 +39,15 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
     }
 
 
-def test_a_job_makes_several_seeds_and_betas_and_what_fills_none_is_a_point(tmp_path):
-    """Of cooling five seeds, of sheared three values of beta, and one that is not swept; both r of
-    the latter run the same kernel."""
+@pytest.mark.slow
+def test_a_job_makes_several_seeds_and_betas_and_leftover_points_are_single_jobs(tmp_path):
+    """Five seeds of cooling; of sheared three values of beta and one outside its sweep. Both r of
+    sheared run the same kernel."""
     project = Project(tmp_path)
 
     def change(config):
         config.update(seeds_per_job=2, betas_per_job=1)
-        config["experiments"]["sheared"]["betas_per_job"] = 2  # which counts more
+        config["experiments"]["sheared"]["betas_per_job"] = 2  # overrides the global setting
         tiny = config["scales"]["tiny"]
         tiny["cooling"]["sweep"].update(seeds=5)
         tiny["sheared"]["sweep"] |= {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"]}
@@ -60,7 +59,7 @@ def test_a_job_makes_several_seeds_and_betas_and_what_fills_none_is_a_point(tmp_
 
 
 @pytest.mark.slow
-def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
+def test_everything_has_films_and_added_experiments(tmp_path):
     project = Project(tmp_path)
     project.configure(
         lambda config: config["experiments"].update(
@@ -68,14 +67,14 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
         )
     )
     planned = project.planned("everything")
-    found = {rule: planned[rule] for rule in ("seeds", "point", "study_movie", "movie")}
-    one_by_one = 1 + 7  # `wide`, and the cases of patterns, have one seed
+    jobs = {rule: planned[rule] for rule in ("seeds", "point", "study_movie", "movie")}
+    single_points = 1 + 7  # `wide`, and the cases of patterns, have one seed
     seeds = JOBS + len(BEYOND) - 1
-    assert found == {"seeds": seeds, "point": one_by_one, "study_movie": 1, "movie": 9}
+    assert jobs == {"seeds": seeds, "point": single_points, "study_movie": 1, "movie": 9}
 
 
 @pytest.mark.slow
-def test_what_a_clone_brings_along_is_made_anew(tmp_path):
+def test_products_that_a_clone_brings_along_are_made_again(tmp_path):
     project = Project(tmp_path)
     (tmp_path / "docs").mkdir()
     (tmp_path / "docs/results.md").touch()
@@ -89,7 +88,7 @@ def test_what_a_clone_brings_along_is_made_anew(tmp_path):
 
 def test_figures_and_experiments_are_targets_by_their_names(project):
     planned = project.planned("fig1b", "fig2a", "waves", "waves.waves", "vibrated")
-    assert planned["figure"] == 2 and planned["plot"] == 2 and planned["study_figure"] == 1
+    assert planned["figure"] == 3 and planned["plot"] == 2
     status, output = project.snakemake("-n", "--", "figg2a")
     assert status == 1 and "target = 'figg2a': must be a path of a file, or a name" in output
     assert "such as fig2a, " in output
@@ -97,9 +96,9 @@ def test_figures_and_experiments_are_targets_by_their_names(project):
 
 @pytest.mark.parametrize(
     "arguments",
-    [pytest.param(one, marks=[pytest.mark.slow] * (one not in QUICK)) for one in ILLEGAL],
+    [pytest.param(target, marks=[pytest.mark.slow] * (target not in QUICK)) for target in ILLEGAL],
 )
-def test_what_is_illegal_is_refused_in_one_line(project, arguments):
+def test_illegal_targets_are_refused_in_one_line(project, arguments):
     assert ILLEGAL[arguments] in refusal(project, *arguments)
 
 

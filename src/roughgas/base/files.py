@@ -1,8 +1,8 @@
-"""Files that are whole or not there; code in folders of studies; the hash of what a result needs.
+"""Atomic writing and bounded reading of files; modules of studies; hashes of a result's code.
 
 The workflow makes a result again when the hash of its code changes: of the modules it uses, and of
-all that these import. A file of the same name, such as schema.yaml beside schema.py, counts, and so
-do the versions of roughgas and numba.
+all that these import. The hash includes files of the same name, such as json_schema.yaml beside
+json_schema.py, and the versions of roughgas and numba.
 """
 
 import ast
@@ -12,6 +12,7 @@ import hashlib
 import importlib
 import os
 import re
+import stat
 import sys
 import tempfile
 import types
@@ -24,12 +25,12 @@ from roughgas.base import InputError, __version__
 
 
 @contextmanager
-def whole_file(path: str | Path) -> Iterator[Path]:
+def atomic_write(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path to write to; rename it to `path` on success, delete it otherwise.
 
-    Parent folders are created. The name, `path`.PID.tmp, is this process's own: a job that outlives
-    a killed workflow must not spoil what its successor writes. After SIGKILL the file remains until
-    the next writer of `path` finds that its process is gone.
+    Parent folders are created. The name, `path`.PID.tmp, is unique to this process: a job that
+    outlives a killed workflow must not spoil the file of its successor. After SIGKILL the file
+    remains until the next writer of `path` finds its process gone.
     Raises OSError, which names `path`, if the folder cannot be written or the disk is full.
     """
     path = Path(path)
@@ -51,10 +52,10 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         draft.unlink(missing_ok=True)
 
 
-def check_place(path: str | Path) -> None:
-    """Raise OSError if `path`, a file or a folder, could not be written.
+def check_writable(path: str | Path) -> None:
+    """Raise OSError if `path`, a file or a folder that need not exist yet, could not be written.
 
-    Called before work that takes long, rather than after it.
+    To be called before long work, so that it is not in vain.
     """
     path = Path(path).absolute()
     if path.exists() and not (path.is_file() or path.is_dir()):
@@ -67,66 +68,103 @@ def check_place(path: str | Path) -> None:
 
 
 def remove_dead_drafts(path: Path) -> None:
-    """Remove what killed writers of `path` have left."""
-    for left in path.parent.glob(f"{path.name}.*.tmp"):
-        if not _is_alive(left.name.split(".")[-2]):
-            left.unlink(missing_ok=True)
+    """Remove the temporary files of `atomic_write` for `path` whose processes have ended."""
+    for draft in path.parent.glob(f"{path.name}.*.tmp"):
+        if not _is_alive(draft.name.split(".")[-2]):
+            draft.unlink(missing_ok=True)
 
 
 def _is_alive(process: str) -> bool:
-    """Return whether a process is there that can still write: one that is over, and whose end its
-    parent has not yet taken note of, cannot."""
+    """Return whether the process with this id exists and can still write, unlike a zombie."""
     try:
         os.kill(int(process), 0)
         state = Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()[0]
     except (ValueError, ProcessLookupError):
         return False
-    except OSError:  # somebody else's, or a system without /proc
+    except OSError:  # another user's process, or a system without /proc
         return True
     return state not in (b"Z", b"X")
 
 
 def write_text(path: str | Path, text: str) -> None:
     """Write `text` (UTF-8, line ends as given) to `path`, whole or not at all."""
-    with whole_file(path) as draft:
+    with atomic_write(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="")
+
+
+MAX_TEXT_BYTES = 1_000_000
+"""Largest size of text written by hand: a README, YAML, Python."""
+MAX_TABLE_BYTES = 100_000_000
+"""Largest size of a table, or of a list of radii."""
+LEGAL_FILE = "be a file to read"
+
+
+def content_of(
+    path: str | Path, name: str, largest: int = MAX_TEXT_BYTES, *, pipes: bool = False
+) -> bytes:
+    """Return the bytes of the file at `path`, which messages call `name`.
+
+    Raises InputError for more than `largest` bytes and for anything except a regular file, such as
+    an endless device, or a pipe unless `pipes` are allowed; OSError where it cannot be read.
+    """
+    kind = os.stat(path).st_mode
+    if not stat.S_ISREG(kind) and not pipes:  # opening it could block or have side effects
+        raise InputError(name, "(no regular file)", LEGAL_FILE)
+    with open(path, "rb", opener=_open_nonblocking) as file:
+        os.set_blocking(file.fileno(), True)
+        content = file.read(largest + 1)
+        size = max(len(content), os.fstat(file.fileno()).st_size)
+    if len(content) > largest:
+        raise InputError(name, f"{size} bytes", f"be of {largest} at most")
+    return content
+
+
+def _open_nonblocking(path: str, flags: int) -> int:
+    """Return the descriptor of a file opened without blocking: a pipe without a writer is empty."""
+    return os.open(path, flags | os.O_NONBLOCK)
 
 
 VERSIONS = f"roughgas {__version__} numba {metadata.version('numba')}\n"
 PACKAGE = Path(__file__).resolve().parent.parent
-BLOCKS = ("body", "handlers", "orelse", "finalbody", "cases")
-"""What holds the statements within a statement, imports among them."""
+BLOCK_FIELDS = ("body", "handlers", "orelse", "finalbody", "cases")
+"""Fields of a statement's syntax tree that hold nested statements, imports among them."""
 
 
 def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
-    """Return a hash of modules as they are, such as "simulation.point", and of all they import.
+    """Return a hash of the sources of modules and of all modules that these import.
 
-    Of modules in `alone` the imports do not count. Raises FileNotFoundError for an unknown one.
+    Names are relative to the package, such as "simulation.point". Imports of modules in `alone` do
+    not count. The hash has 16 hexadecimal digits. Raises FileNotFoundError for an unknown module.
     """
-    names = sorted(closure(*modules, alone=alone).union(alone))
-    text = VERSIONS + "".join(f"{name} {_read(name)[0]}\n" for name in names)
+    names = sorted(import_closure(*modules, alone=alone).union(alone))
+    text = VERSIONS + "".join(f"{name} {digest_of(name)}\n" for name in names)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def code_in(
-    folder: str | Path, name: str, beside: Iterable[str] = (), alone: Iterable[str] = ()
+    folder: str | Path,
+    name: str,
+    extra_files: Iterable[str] = (),
+    alone: Iterable[str] = (),
 ) -> str:
-    """Return a hash of the module `name` in the folder of a study, of those there that it imports,
-    and of all that these import of the package; and of other files `beside` it.
+    """Return a hash of the code of a study's module: 16 hexadecimal digits.
 
-    Of the package's modules in `alone` the imports do not count. Raises InputError for a file that
-    is not there or is no Python.
+    It includes the module `name` in the `folder` of the study, the modules that it imports from the
+    folder and from the package, and `extra_files` of the folder. Imports of the package's modules
+    in `alone` do not count. Raises InputError for a file that is missing or is no Python.
     """
-    folder, todo, package, digests = Path(folder), [name], set[str](), {}
-    while todo:
-        file = f"{todo.pop()}.py"
+    folder, pending, package, digests = Path(folder), [name], set[str](), {}
+    while pending:
+        file = f"{pending.pop()}.py"
         if file not in digests:
             with _python(folder / file):
                 tree = ast.parse((folder / file).read_bytes())
             digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
             package |= set(_imports(tree, True))
-            todo += [one for one in _siblings(tree) if (folder / f"{one}.py").exists()]
-    for file in beside:
+            pending += [
+                sibling for sibling in _siblings(tree) if (folder / f"{sibling}.py").exists()
+            ]
+    for file in extra_files:
         digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
     text = code_of(*package, alone=alone) + "".join(map(str, sorted(digests.items())))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
@@ -134,82 +172,103 @@ def code_in(
 
 @contextmanager
 def _python(path: Path) -> Iterator[None]:
-    """Raise InputError where the file of a study is not there, and for what its Python raises."""
-    called = f"studies/{path.parent.name}/{path.name}"
+    """Turn any error of the Python in a study's file at `path` into an InputError that names it.
+
+    Raises InputError also for a missing file.
+    """
+    name = name_in_study(path)
     if not path.exists():
-        raise InputError(called, "(nothing)", "be there for this")
+        raise InputError(name, "(nothing)", "be there for this")
     try:
         yield
     except Exception as error:
-        raise InputError(called, f"{type(error).__name__}: {error}", "be Python") from error
+        raise InputError(name, f"{type(error).__name__}: {error}", "be Python") from error
 
 
 def _siblings(tree: ast.Module) -> Iterator[str]:
-    """Generate the modules beside it that a module imports."""
+    """Yield the names of the modules in its own folder that a module's syntax tree imports."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.level == 1:
-            names = [one.name for one in node.names]
+            names = [alias.name for alias in node.names]
             yield from [node.module.partition(".")[0]] if node.module else names
 
 
-def closure(*modules: str, alone: Iterable[str] = ()) -> set[str]:
+def digest_of(module: str) -> str:
+    """Return the SHA-256 digest of a module, such as "simulation.point", and of its data files.
+
+    These are the files of its name with another suffix, beside it.
+    """
+    return _digest_and_imports(module)[0]
+
+
+def import_closure(*modules: str, alone: Iterable[str] = ()) -> set[str]:
     """Return the names of modules, of all that they import anywhere, and of their packages.
 
-    Of a package that is only around a module, imports inside functions do not count; nowhere those
-    that only type checkers see, nor any of modules in `alone`. The facade, `roughgas` itself, is
-    not among them.
+    Names are relative to the package, such as "simulation.point". Imports inside functions count,
+    except in a package that is only the parent of a module. Imports for type checkers alone never
+    count, nor do imports of modules in `alone`. The facade, `roughgas` itself, is left out.
     """
     alone = {*alone}
-    todo = [(name, True) for name in modules]
-    found: dict[str, bool] = {}
-    while todo:
-        name, whole = todo.pop()
-        if name and whole > found.get(name, -1):
-            found[name] = whole
-            _, imported = _read(name)
-            followed = set() if name in alone else imported[whole]
-            todo += [(name.rpartition(".")[0], False), *((one, True) for one in followed)]
-    return set(found)
+    pending = [(name, True) for name in modules]
+    visited: dict[str, bool] = {}
+    while pending:
+        name, with_function_imports = pending.pop()
+        if name and with_function_imports > visited.get(name, -1):
+            visited[name] = with_function_imports
+            _, imported = _digest_and_imports(name)
+            followed = set() if name in alone else imported[with_function_imports]
+            pending += [(name.rpartition(".")[0], False), *((module, True) for module in followed)]
+    return set(visited)
 
 
 @functools.cache
-def _read(name: str) -> tuple[str, tuple[set[str], set[str]]]:
-    """Return a hash of a module, and what it imports: at once, and in all."""
-    file = _file(name)
+def _digest_and_imports(name: str) -> tuple[str, tuple[set[str], set[str]]]:
+    """Return the SHA-256 digest of a module, and its imports: at top level, and all of them.
+
+    The digest includes the data files of its name.
+    """
+    file = _source_path(name)
     tree, digest = ast.parse(file.read_bytes()), hashlib.sha256(file.read_bytes())
-    for beside in sorted(set(file.parent.glob(f"{file.stem}.*")) - {file}):
-        digest.update(beside.read_bytes())
+    for data_file in sorted(set(file.parent.glob(f"{file.stem}.*")) - {file}):
+        digest.update(data_file.read_bytes())
     return digest.hexdigest(), (set(_imports(tree, False)), set(_imports(tree, True)))
 
 
-def _file(name: str) -> Path:
+def _source_path(name: str) -> Path:
+    """Return the path of the source of a module or package, such as "simulation.point"."""
     path = PACKAGE.joinpath(*name.split("."))
     return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
 
 
 def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
-    """Generate the modules of the package that a syntax tree imports."""
+    """Yield the modules of the package that a syntax tree imports, relative to the package.
+
+    Imports inside functions count if `in_functions`; imports for type checkers alone do not.
+    """
     if isinstance(node, ast.Import | ast.ImportFrom):
         package = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
         for alias in node.names:
             name = (package + alias.name).removeprefix("roughgas.")
             if (package + alias.name).startswith("roughgas."):
-                yield name if _file(name).exists() else name.rpartition(".")[0]
+                yield name if _source_path(name).exists() else name.rpartition(".")[0]
     for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
-    blocks = ("orelse",) if for_types else BLOCKS
+    blocks = ("orelse",) if for_types else BLOCK_FIELDS
     for child in (child for block in blocks for child in getattr(node, block, ())):
         if in_functions or not isinstance(child, ast.FunctionDef):
             yield from _imports(child, in_functions)
 
 
-def module_of(folder: str | Path, name: str) -> types.ModuleType:
-    """Return the module `name`, such as figure, of the study in `folder`; it may import those
-    beside it. Raises InputError where there is none, or where it is no Python."""
+def study_module(folder: str | Path, name: str) -> types.ModuleType:
+    """Return the module `name`, such as figure, of the study in `folder`.
+
+    It may import other modules of the folder. Raises InputError for a missing file, or a file that
+    is no Python.
+    """
     folder = Path(folder).resolve()
     package = "roughgas_study_" + re.sub(r"\W", "_", folder.name)
     if getattr(sys.modules.get(package), "__path__", None) != [str(folder)]:
-        for known in [one for one in sys.modules if one.partition(".")[0] == package]:
-            del sys.modules[known]
+        for stale in [loaded for loaded in sys.modules if loaded.partition(".")[0] == package]:
+            del sys.modules[stale]
         sys.modules[package] = types.ModuleType(package)
         sys.modules[package].__path__ = [str(folder)]
     with _python(folder / f"{name}.py"):
@@ -217,6 +276,21 @@ def module_of(folder: str | Path, name: str) -> types.ModuleType:
 
 
 def readme(folder: str | Path) -> str:
-    """Return README.md of the study in `folder`; nothing without one."""
+    """Return the text of README.md of the study in `folder`, with uniform line ends; "" without.
+
+    Raises InputError for text that is not UTF-8, exceeds MAX_TEXT_BYTES, or cannot be read.
+    """
     file = Path(folder, "README.md")
-    return file.read_text(encoding="utf-8") if file.exists() else ""
+    name = name_in_study(file)
+    try:
+        text = content_of(file, name).decode("utf-8") if file.exists() else ""
+    except UnicodeDecodeError as error:
+        raise InputError(name, "(not text)", "be text in UTF-8") from error
+    except OSError as error:
+        raise InputError(name, error.strerror, LEGAL_FILE) from error
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def name_in_study(path: Path) -> str:
+    """Return the name of a study's file for messages: studies/STUDY/FILE, wherever it lies."""
+    return f"studies/{path.parent.name}/{path.name}"

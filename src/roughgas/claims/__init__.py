@@ -1,9 +1,12 @@
-"""Statements and their verdicts: of McNamara & Luding (1998), on its experiments, and of studies.
+"""Claims, statements with their judges: of McNamara & Luding (1998) on its experiments, of studies.
 
-Tables in YAML hold quotations, the data that they are on, and their judges. Verdicts are JSON, for
-programs, and Markdown, for people: same data, same bytes.
+Tables in YAML hold quotations, the names of the data, and judges. A judge is a function of datasets
+that returns a finding: a verdict (holds, holds with a qualification, fails) with its reason and
+numbers. Verdicts are written as JSON, for programs, and as Markdown, for people; the same data give
+the same bytes.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -14,144 +17,224 @@ import xarray as xr
 import yaml
 
 from roughgas import base
-from roughgas.base import InputError
-from roughgas.base.files import module_of, write_text
-from roughgas.claims import evidence, paper
-from roughgas.claims.evidence import NOT_TESTED, Finding, NotTestedError, load_all, points, text
-from roughgas.statistics.errors import SIGNIFICANT
+from roughgas.base import InputError, NamedValues, Record
+from roughgas.base.files import study_module, write_text
+from roughgas.claims import driven, verdicts
+from roughgas.claims.verdicts import (
+    FAILS,
+    NOT_TESTED,
+    Finding,
+    NotTestedError,
+    check_power,
+    load_all,
+    points,
+    text,
+)
+from roughgas.statistics.errors import POWER, SIGNIFICANCE, SIGNIFICANT
 
-OWN = (evidence, paper)
-"""The modules whose samples and judges every table may name."""
+GENERAL_MODULES = (verdicts, driven)
+"""Modules whose samples and judges are available to every table."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
 Phys. Rev. E 58, 2247 (1998)"""
-ON_STUDY = {
+STATEMENTS = "statements"
+OPTIONAL_KEYS = ("ours", "conclusion", "refuted_beyond")
+"""Keys of a row of claims.yaml that are fields of `Statement` with a default."""
+HEAD_KEYS = ("title", "about", "quotes", "after")
+"""Texts that the head of a table may replace."""
+DEFAULT_TEXTS = {
     "about": "The statements of studies/{name}, computed from its datasets.",
     "quotes": "Statement",
 }
 
 
+WHEN = {
+    "before data": "before its data",
+    "partly after data": "in part after its data",
+    "after data": "after its data",
+}
+"""Times at which a criterion was fixed, in claims.yaml, and in sentences."""
+
+
+class Fixed(NamedTuple):
+    """When a criterion was fixed: a key of WHEN."""
+
+    when: str
+    tries: int = 1  # criteria that the data have been judged by, this one included
+    note: str = ""  # what was known, or changed
+
+    @property
+    def text(self) -> str:
+        """The time in words, with the number of tries if there were several, and the note."""
+        tries = f", {self.tries} tries" if self.tries > 1 else ""
+        return f"{WHEN[self.when]}{tries}{'; ' * bool(self.note)}{self.note}"
+
+    @property
+    def mark(self) -> str:
+        """A remark beside a verdict by a criterion that was chosen after its data, or tried."""
+        if self == Fixed("before data", note=self.note):
+            return ""
+        return f"criterion {WHEN[self.when]}, {self.tries} {'try' if self.tries == 1 else 'tries'}"
+
+
 class Statement(NamedTuple):
-    """A testable statement: `judge` takes the datasets of `experiments`, in that order."""
+    """A testable statement; `judge` takes the datasets of `experiments`, in their order."""
 
     name: str
     quote: str
     experiments: tuple[str, ...]
     judge: Callable[..., Finding]
-    criterion: str  # what is judged, in a sentence
-    fixed: str  # whether the criterion was, before its data were seen
-    ours: bool = False  # whether we state it, not the text that the table is about
+    criterion: str  # in a sentence
+    fixed: Fixed
+    ours: bool = False  # whether it is our statement, not a quotation
+    conclusion: str = ""  # a few words for the title of a figure of data in which it holds
+    refuted_beyond: float = math.inf  # deviation of the deciding number that refutes it
 
     @property
     def text(self) -> str:
-        """The statement in quotation marks, or as ours without them."""
+        """The statement as text in quotation marks, or, if it is ours, marked as such."""
         return f"Ours: {self.quote}" if self.ours else f"“{self.quote}”"
 
 
 class Subject(NamedTuple):
-    """What a table of verdicts is about: its texts, and its statements."""
+    """A table of statements with its texts, for verdicts."""
 
     title: str
     about: str  # a paragraph
-    quotes: str  # the heading of the column of quotations
+    quotes: str  # heading of the column of quotations
     statements: tuple[Statement, ...]
     after: str = ""  # a line below the table
+    reservation: str = ""  # why its criteria were not fixed before these data
 
 
-def read_subject(name: str) -> Subject:
-    """Return the table of statements in the file `name`.yaml of this room."""
-    table = _read(Path(__file__).with_name(f"{name}.yaml"))
-    table["about"] = table["about"].format(reference=REFERENCE)
-    rows = table["statements"].items()
-    table["statements"] = tuple(_statement(one, row, OWN) for one, row in rows)
-    return Subject(**table)
-
-
-def read_study(folder: str | Path, title: str, experiments: Iterable[str]) -> Subject:
+def read_study(
+    folder: str | Path, title: str, experiments: Iterable[str], reservation: str = ""
+) -> Subject:
     """Return the table of statements in claims.yaml of the study in `folder`, already checked.
 
-    Its judges are those of judges.py beside it, and the general ones. `experiments` are those of
-    the study, called NAME.KEY. Raises InputError for a judge that is not there.
+    `title` is the study's. The table may have a head, whose texts replace the default texts; its
+    rows are then under `statements`. Judges come from judges.py of the study and from the general
+    modules. `experiments` are the full names, NAME.KEY, of the study's experiments, `reservation`
+    says why its criteria were not fixed before these data. Raises InputError for an unknown judge.
     """
     folder = Path(folder)
-    own = {name.partition(".")[2]: name for name in experiments} | {"tasks": folder.name}
-    judges = (module_of(folder, "judges"),) if (folder / "judges.py").exists() else ()
-    statements = []
-    for name, row in _read(folder / "claims.yaml").items():
-        row |= {"experiments": [own.get(one, one) for one in row["experiments"]]}
+    full_names = {name.partition(".")[2]: name for name in experiments} | {"tasks": folder.name}
+    judges = (study_module(folder, "judges"),) if (folder / "judges.py").exists() else ()
+    table, statements = _read(folder / "claims.yaml"), []
+    for name, row in table.get(STATEMENTS, table).items():
+        row |= {
+            "experiments": [
+                full_names.get(experiment, experiment) for experiment in row["experiments"]
+            ]
+        }
         try:
-            statements.append(_statement(name, row, (*OWN, *judges)))
+            statements.append(_statement(name, row, (*GENERAL_MODULES, *judges)))
         except KeyError as error:
             key = f"studies/{folder.name}/claims.yaml: {name}: judge"
             legal = "be a function of roughgas.judging or judges.py"
             raise InputError(key, error, legal) from error
-    about = {key: text.format(name=folder.name) for key, text in ON_STUDY.items()}
-    return Subject(f"{title}: the verdicts", statements=tuple(statements), **about)
+    head = {key: table[key] for key in HEAD_KEYS if key in table} if STATEMENTS in table else {}
+    texts = {"title": f"{title}: the verdicts"} | DEFAULT_TEXTS | head
+    texts |= {"about": texts["about"].format(name=folder.name, reference=REFERENCE)}
+    return Subject(statements=tuple(statements), reservation=reservation, **texts)
 
 
 def _read(path: Path) -> Any:
+    """Return the content of a YAML file, which `read_study` has already checked."""
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
-def _statement(name: str, row: Mapping[str, Any], modules: tuple[ModuleType, ...]) -> Statement:
-    functions = {key: one for module in modules for key, one in vars(module).items()}
+def _statement(name: str, row: Record, modules: tuple[ModuleType, ...]) -> Statement:
+    """Return the statement `name` from its row in claims.yaml, with its judge from the modules.
+
+    Raises KeyError for an unknown judge.
+    """
+    functions = {key: function for module in modules for key, function in vars(module).items()}
     judge = functions[row["judge"]] if "judge" in row else _agrees(row, functions)
-    texts = row["criterion"], row["fixed"], row.get("ours", False)
-    return Statement(name, row["quote"], tuple(row["experiments"]), judge, *texts)
+    optional = {key: row[key] for key in OPTIONAL_KEYS if key in row}
+    experiments, fixed = tuple(row["experiments"]), Fixed(**row["fixed"])
+    return Statement(name, row["quote"], experiments, judge, row["criterion"], fixed, **optional)
 
 
-def _agrees(row: Mapping[str, Any], functions: Mapping[str, Any]) -> Callable[..., Finding]:
-    """Return the judge of agreement with what `agrees_with` names."""
-    of, other = functions[row.get("sample", "deviation")], row["agrees_with"]
+def _agrees(row: Record, functions: Mapping[str, Callable[..., Any]]) -> Callable[..., Finding]:
+    """Return the judge of a row of claims.yaml with `agrees_with`, the name of a reference.
+
+    It judges whether the row's sample, by default R - theory, is compatible with zero. `functions`
+    has the samples by name.
+    """
+    sample, reference = functions[row.get("sample", "deviation")], row["agrees_with"]
     if row.get("in_proportion"):
-        return lambda gas: evidence.agreement_in_proportion(gas, other)
-    return lambda *datasets: evidence.agreement(of(*datasets), other)
+        return lambda gas: verdicts.agreement_in_proportion(gas, reference)
+    return lambda *datasets: verdicts.agreement(sample(*datasets), reference)
 
 
 def _size(data: xr.Dataset) -> str:
-    """Return a sentence on the size of a cooling gas, on which its R depends; "" of others."""
-    about = data.attrs
-    if about.get("theory") != "K" or "packing" not in about:
+    """Return a sentence on the size of a cooling gas, on which its R depends; "" for other gases.
+
+    R = E_rot/(E_rot + E_trans); `data` is a reduced dataset with theory.
+    """
+    attributes = data.attrs
+    if attributes.get("theory") != "K" or "packing" not in attributes:
         return ""
-    size = f"N = {about['particles']}, packing {about['packing']:.2g}"
+    size = f"N = {attributes['particles']}, packing {attributes['packing']:.2g}"
     return f"R of the cooling gas is that at {size}."
 
 
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
-    """Judge `statement` on `datasets` (by experiment or study), or say why it cannot be judged."""
+    """Return the finding on a statement from datasets by experiment or study.
+
+    It is "not tested", with a reason, if data are missing or cannot decide, and if its test could
+    not have failed: if deviations that refute it would have been hidden by errors.
+    """
     missing = [name for name in statement.experiments if name not in datasets]
     if missing:
         return Finding(NOT_TESTED, f"No data of {', '.join(missing)}.")
     used = [datasets[name] for name in statement.experiments]
     try:
         finding = statement.judge(*used)
-    except NotTestedError as lack:
-        reason = str(lack)
+        if finding.verdict != FAILS and math.isfinite(statement.refuted_beyond):
+            check_power(finding.smallest_deviation, statement.refuted_beyond)
+    except NotTestedError as reason_not_tested:
+        reason = str(reason_not_tested)
         return Finding(NOT_TESTED, f"{reason[0].upper()}{reason[1:]}.")
     for sentence in filter(None, map(_size, used)):
         finding = finding.with_note(sentence)
-    aside = sum(data.attrs.get("set_aside", 0) for data in used)
-    if not aside:
+    set_aside = sum(data.attrs.get("set_aside", 0) for data in used)
+    if not set_aside:
         return finding
-    return finding.with_note(f"R of {points(aside)} not known to be in a steady state set aside.")
+    return finding.with_note(
+        f"R of {points(set_aside)} not known to be in a steady state set aside."
+    )
 
 
 SCHEMA_VERSION = 1
-LIMITS = ("agree", "limit", "tendency", "few", "near", "far")
-TOLERANCES = {name: getattr(evidence, name.upper()) for name in LIMITS}
-TOLERANCES |= {"significant_sigma": SIGNIFICANT}
+TOLERANCES = {
+    "agree": verdicts.AGREE,
+    "limit": verdicts.DISAGREE,
+    "tendency": verdicts.TENDENCY,
+    "few": verdicts.EXCEPTIONS,
+    "near": verdicts.AGREE_RELATIVE,
+    "far": verdicts.DISAGREE_RELATIVE,
+    "significant_sigma": SIGNIFICANT,
+    "significance": SIGNIFICANCE,
+    "power": POWER,
+}
 HOW_TO_READ = """\
 How to read it. A number is "value, 95 % low to high (sigma)": its 95 % interval by Student's t, and
 its distance from 0 in sigma, which is the Gaussian z with the probability of Student's t. With few
 degrees of freedom the interval is wider than 4 standard errors. Significance and size count
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
-where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant,
-{significant_sigma:g} sigma or more. In between, agreement is qualified, and so it is where errors
-are too large to tell at more than a few points ({few:.0%} of them). Where R spans decades it is
+where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant:
+its two-sided probability by Student's t is below {significance:.2g}, {significant_sigma:g} sigma.
+In between, agreement is qualified, and so it is where errors are too large to tell at more than a
+few points ({few:.0%} of them). Where R spans decades it is
 also judged relative to theory: agreement is qualified where more than a few points differ by
 {near:.0%} of theory, and fails at {far:.0%}. A direction (above, below) needs {tendency:g} in R.
-R of points that are not in a steady state is set aside, and these are counted. docs/claims.md gives
-the reason for each of these numbers, and says what was fixed before the data were seen.
+R of points that are not in a steady state is set aside, and these are counted. Each statement has
+the smallest deviation of its deciding number that the test could have seen, with probability
+{power:g}, at half of its points; a test that deviations large enough to refute the statement would
+have passed is "not tested". docs/evidence.md
+gives the reason for each of these numbers, and says what was fixed before the data were seen.
 
 Errors are those of the reduced datasets (`R_stderr`, with `R_dof` degrees of freedom), which pool
 the scatter over seeds with the errors within the runs; `coverage.md` shows how often their
@@ -161,10 +244,11 @@ intervals hold the truth."""
 def judge(
     reduced: Iterable[str | Path], json_path: str | Path, md_path: str | Path, subject: Subject
 ) -> list[Finding]:
-    """Judge every statement of a subject on reduced datasets and studies; write JSON and Markdown.
+    """Judge every statement of a subject on the datasets at paths; write JSON and Markdown.
 
-    Statements whose experiments or studies are not among the datasets are "not tested".
-    Raises InputError where the datasets are of several scales.
+    `reduced` are the paths of reduced datasets and of datasets of studies. Statements whose
+    experiments or studies are missing among the datasets are "not tested". Returns the findings in
+    the order of the statements. Raises InputError for datasets of several scales.
     """
     datasets = {name: data for path in reduced for name, data in load_all(path).items()}
     scales = sorted({data.attrs["scale"] for data in datasets.values()})
@@ -179,11 +263,15 @@ def judge(
 def as_json(
     subject: Subject, findings: list[Finding], datasets: dict[str, xr.Dataset], scale: str
 ) -> str:
-    """Return all findings as JSON, with the tolerances used and the data they rest on."""
+    """Return all findings as JSON, with the tolerances, the scale and a summary of the datasets.
+
+    `datasets` are by experiment or study.
+    """
     content = {
         "schema_version": SCHEMA_VERSION,
         "title": subject.title,
         "scale": scale,
+        "reservation": subject.reservation,
         "tolerances": TOLERANCES,
         "data": {name: _data(data) for name, data in sorted(datasets.items())},
         "claims": list(map(_claim, subject.statements, findings)),
@@ -191,8 +279,11 @@ def as_json(
     return base.as_json(content, indent=1) + "\n"
 
 
-def _data(data: xr.Dataset) -> dict[str, Any]:
-    """Return what a verdict rests on, of one experiment or study."""
+def _data(data: xr.Dataset) -> NamedValues:
+    """Return a summary of the dataset of an experiment or study, for JSON, by name.
+
+    It has numbers of particles, points and seeds, and the kind of theory; of a study the title.
+    """
     if "experiment" not in data.attrs:
         return {"study": data.attrs["title"]}
     counts = {name: int(data.attrs[name]) for name in ("particles", "points", "set_aside")}
@@ -200,15 +291,24 @@ def _data(data: xr.Dataset) -> dict[str, Any]:
     return counts | {"seeds": int(data.n_seeds.max()), "theory": data.attrs["theory"]} | swept
 
 
-def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
+def _claim(statement: Statement, finding: Finding) -> NamedValues:
+    """Return a statement and its finding by name, as they stand in JSON.
+
+    The deciding number, the first, has `deviation` (its value), `error` (standard error), `ci95`
+    (half width of its 95 % interval) and `sigma` (distance from 0); `detectable` is the smallest
+    deviation that the test could have seen, null if it is unknown.
+    """
     numbers = [{"label": label} | value.record() for label, value in finding.numbers]
     deciding = numbers[0] if numbers else {}
+    detectable = finding.smallest_deviation
     return {
         "id": statement.name,
         "quote": statement.quote,
         "ours": statement.ours,
         "criterion": statement.criterion,
-        "fixed": statement.fixed,
+        "fixed": statement.fixed.text,
+        "fixed_when": statement.fixed.when,
+        "tries": statement.fixed.tries,
         "experiments": list(statement.experiments),
         "verdict": finding.verdict,
         "reason": finding.reason,
@@ -216,52 +316,74 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
         "error": deciding.get("error"),
         "ci95": deciding.get("ci95"),
         "sigma": deciding.get("sigma"),
+        "detectable": float(f"{detectable:.6g}") if math.isfinite(detectable) else None,
         "numbers": numbers,
     }
 
 
 def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
-    """Return a table of all verdicts, then the reasons and numbers of each, as Markdown."""
+    """Return a table of all verdicts, and the reasons and numbers of each, as Markdown.
+
+    `scale` is the name of the scale of the data, such as "paper".
+    """
     rows = [(i, *row) for i, row in enumerate(zip(subject.statements, findings, strict=True), 1)]
-    head = ("#", subject.quotes, "Deciding number", "Verdict")
-    parts = [
+    head = ("#", subject.quotes, "Deciding number", "Could have seen", "Verdict")
+    paragraphs = [
         f"# {subject.title}",
+        *(
+            [f"**Not fixed before these data.** {subject.reservation}"]
+            if subject.reservation
+            else []
+        ),
         f"{subject.about}\n",
         HOW_TO_READ.format(**TOLERANCES),
         f"Sizes and run lengths: those of the scale `{scale}` in config.yaml.",
         _counts(subject.statements, findings),
-        base.markdown(head, [_cells(*row) for row in rows]).rstrip(),
+        base.markdown(head, [_cells(*row, subject.reservation) for row in rows]).rstrip(),
         *([subject.after] if subject.after else []),
         "## Reasons and numbers",
-        *(_details(*row) for row in rows),
+        *(_details(*row, subject.reservation) for row in rows),
     ]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(paragraphs) + "\n"
 
 
 def _counts(statements: Iterable[Statement], findings: Iterable[Finding]) -> str:
-    """Return the number of statements of each verdict, those that are ours apart."""
+    """Return sentences with the numbers of statements of each verdict, ours separately."""
     pairs, sentences = list(zip(statements, findings, strict=True)), []
     for ours, kind in ((False, "statements"), (True, "statements of ours")):
-        count = Counter(finding.verdict for one, finding in pairs if one.ours == ours)
+        count = Counter(finding.verdict for statement, finding in pairs if statement.ours == ours)
         if count:
-            verdicts = (f"{one} {count[one]}" for one in (*evidence.VERDICTS, NOT_TESTED))
-            sentences.append(f"Of {count.total()} {kind}: {', '.join(verdicts)}.")
+            counts = (f"{verdict} {count[verdict]}" for verdict in (*verdicts.VERDICTS, NOT_TESTED))
+            sentences.append(f"Of {count.total()} {kind}: {', '.join(counts)}.")
     return " ".join(sentences)
 
 
-def _cells(number: int, statement: Statement, finding: Finding) -> tuple[object, ...]:
+def _cells(
+    number: int, statement: Statement, finding: Finding, reservation: str
+) -> tuple[object, ...]:
+    """Return the cells of a statement in the table of verdicts; `number` counts from 1."""
     deciding = "".join(f"{label}: {text(value)}" for label, value in finding.numbers[:1])
-    return number, statement.text, deciding, f"**{finding.verdict}**"
+    mark = "criterion not fixed before these data" if reservation else statement.fixed.mark
+    verdict = f"**{finding.verdict}**{f' ({mark})' if mark else ''}"
+    return number, statement.text, deciding, _detectable(finding), verdict
 
 
-def _details(number: int, statement: Statement, finding: Finding) -> str:
+def _detectable(finding: Finding) -> str:
+    """Return the smallest deviation that the test of a finding could have seen, as text.
+
+    "–" if its errors are unknown, or infinite.
+    """
+    deviation = finding.smallest_deviation
+    return f"{deviation:.2g}" if math.isfinite(deviation) else "–"
+
+
+def _details(number: int, statement: Statement, finding: Finding, reservation: str) -> str:
+    """Return the paragraphs below the table on a statement: its verdict, reason and numbers."""
+    fixed = reservation or f"Fixed {statement.fixed.text}."
     numbers = "".join(f"\n- {label}: {text(value)}" for label, value in finding.numbers)
     return (
         f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.text}\n\n"
-        f"{finding.reason}\n\n- criterion: {statement.criterion} Fixed {statement.fixed}.\n"
-        f"- data: {', '.join(statement.experiments)}{numbers}"
+        f"{finding.reason}\n\n- criterion: {statement.criterion} {fixed}\n"
+        f"- data: {', '.join(statement.experiments)}\n"
+        f"- smallest deviation that the test could have seen: {_detectable(finding)}{numbers}"
     )
-
-
-PAPER = read_subject("paper")
-"""The statements of the paper, on its own experiments."""

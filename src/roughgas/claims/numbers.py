@@ -1,7 +1,7 @@
-"""The numbers that pages quote: each computed from reduced datasets and verdicts, as text by name.
+"""Numbers quoted in pages: computed from reduced datasets and verdicts, as text by name.
 
-A page has the mark `<!--NAME-->` right behind a number. When the documentation is built, what
-stands before a mark comes from the file that `write` has written (`filled`).
+A page has the mark `<!--NAME-->` right after a number. When the documentation is built, `filled`
+replaces the text before each mark by the number in the file that `write` has written.
 """
 
 import json
@@ -10,131 +10,174 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
-from roughgas.base import as_json
+from roughgas.base import Record, as_json
 from roughgas.base.files import write_text
-from roughgas.claims.evidence import FAILS, HOLDS, QUALIFIED, theory_of
-from roughgas.data.reduced import EQUILIBRATED, read_reduced
+from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED, theory_of
+from roughgas.data.reduced import STEADY_SHARE, read_reduced
 from roughgas.statistics.errors import Estimate
 
 WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_walls"
-ROWS = {"r9_b95": (0.9, -0.95), "r8_b80": (0.8, -0.8), "r8_b95": (0.8, -0.95), "r9_b50": (0.9, 0.5)}
-"""Points of the sheared gas that are compared one by one: (r, beta)."""
+SHEARED_POINTS = {
+    "r9_b95": (0.9, -0.95),
+    "r8_b80": (0.8, -0.8),
+    "r8_b95": (0.8, -0.95),
+    "r9_b50": (0.9, 0.5),
+}
+"""Points (r, beta) of the sheared gas that are quoted individually."""
 MISSING = "–"
-"""In place of a number that a small scale does not simulate."""
+"""Replaces a number that a small scale does not simulate."""
 IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
-MARKED = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
-COUNTED = {"holds": HOLDS, "qualified": QUALIFIED, "fails": FAILS}
+MARKED_NUMBER = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
+VERDICT_KEYS = {"holds": HOLDS, "qualified": QUALIFIED, "fails": FAILS}
 
 
 def write(inputs: list[str], *, claims: str, output: str) -> None:
-    """Write the numbers of reduced datasets and of the verdicts on the paper, JSON."""
-    gases = {one.attrs["experiment"]: _beside_theory(one) for one in map(read_reduced, inputs)}
+    """Write the quoted numbers of reduced datasets and of the verdicts on the paper, JSON."""
+    gases = {gas.attrs["experiment"]: _beside_theory(gas) for gas in map(read_reduced, inputs)}
     verdicts = json.loads(Path(claims).read_text(encoding="utf-8"))
     write_text(output, as_json(numbers(gases, verdicts)))
 
 
 def numbers(gases: Mapping[str, xr.Dataset], verdicts: Mapping[str, list]) -> dict[str, str]:
-    """Return the numbers of experiments beside theory, and the counts of verdicts, by name.
+    """Return the numbers that pages quote, as texts by the names of their marks.
 
-    Of experiments of studies: gases that random kicks drive, where these turn no particle.
+    `gases` are reduced datasets with theory, by experiment, `verdicts` is the content of
+    claims.json on the paper. Experiments of studies are gases driven by random kicks; only kicks
+    without spin are quoted.
     """
     bed, sheared, cooling = (gases[name] for name in ("vibrated", "sheared", "cooling"))
-    rough, *other = (abs(gases[name].R - bed.R) for name in WALLS)
-    found = {f"bed.collisions.{key}": one for key, one in _most(bed, "R_collisional").items()}
-    found |= {f"bed.time.{key}": one for key, one in _most(bed, "R").items()}
-    found |= {f"sheared.time.{key}": one for key, one in _most(sheared, "R").items()}
-    for name in (one for one in gases if "." in one):
+    rough_walls, *other_walls = (abs(gases[name].R - bed.R) for name in WALLS)
+    texts = {
+        f"bed.collisions.{key}": x for key, x in _largest_deviation(bed, "R_collisional").items()
+    }
+    texts |= {f"bed.time.{key}": x for key, x in _largest_deviation(bed, "R").items()}
+    texts |= {f"sheared.time.{key}": x for key, x in _largest_deviation(sheared, "R").items()}
+    for name in (experiment for experiment in gases if "." in experiment):
         kicked = gases[name].sel(spin_share=0.0)
-        found[f"{name}.collisions"] = _up(abs(kicked.R_collisional - kicked.theory))
-        found[f"{name}.time"] = _at(kicked, "R", 0.9, 0.0)
-    found["walls.rough"] = _text(float(rough.max()), 1)
-    found["walls.other"] = _up(xr.merge([one.rename(f"R{k}") for k, one in enumerate(other)]))
-    off = 100.0 * (cooling.R / cooling.theory - 1.0)
-    found["cooling.percent"] = _text(float(abs(off.where(off.r >= 0.8)).max()), 1)
-    found["cooling.dissipative.percent"] = _text(-float(off.where(off.r < 0.8).min()), 0)
+        texts[f"{name}.collisions"] = _largest_text(abs(kicked.R_collisional - kicked.theory))
+        texts[f"{name}.time"] = _estimate_text(kicked, "R", 0.9, 0.0)
+    texts["walls.rough"] = _text(float(rough_walls.max()), 1)
+    shifts = xr.merge([shift.rename(f"R{k}") for k, shift in enumerate(other_walls)])
+    texts["walls.other"] = _largest_text(shifts)
+    percent = 100.0 * (cooling.R / cooling.theory - 1.0)
+    texts["cooling.percent"] = _text(float(abs(percent.where(percent.r >= 0.8)).max()), 1)
+    texts["cooling.dissipative.percent"] = _text(-float(percent.where(percent.r < 0.8).min()), 0)
     for name, r in (("r99", 0.99), ("r8", 0.8)):
-        at = cooling.R.where((cooling.r == r) & (cooling.beta == -0.8))
-        found[f"cooling.{name}_b80"] = _text(float(at.max()), 2)
-    return found | _of_rows(sheared) | _counts(verdicts["claims"])
+        ratio = cooling.R.where((cooling.r == r) & (cooling.beta == -0.8))
+        texts[f"cooling.{name}_b80"] = _text(float(ratio.max()), 2)
+    texts |= _smooth_disks(gases[WALLS[0]])
+    return texts | _sheared_points(sheared) | _counts(verdicts["claims"])
 
 
 def filled(page: str, numbers: Mapping[str, str], marks: bool = False) -> str:
-    """Return a page with these numbers before its marks; the `marks` stay or go.
+    """Return a page with the texts `numbers` filled in before its marks `<!--NAME-->`.
 
-    Raises KeyError for a mark that names none.
+    The marks are kept if `marks` is true. Raises KeyError for an unknown mark.
     """
-    return MARKED.sub(lambda one: numbers[one[2]] + one[1] * marks, page)
+    return MARKED_NUMBER.sub(lambda match: numbers[match[2]] + match[1] * marks, page)
 
 
 def quoted(page: str) -> set[str]:
-    """Return the names of all marks in a page."""
-    return {one[2] for one in MARKED.finditer(page)}
+    """Return the names of all marks `<!--NAME-->` in a page."""
+    return {match[2] for match in MARKED_NUMBER.finditer(page)}
 
 
 def _beside_theory(gas: xr.Dataset) -> xr.Dataset:
-    """Return a reduced dataset with `theory`, and its averages NaN where there is no steady state.
+    """Return a reduced dataset with `theory`, R by theory, and with averages of steady states only.
 
-    Other than `evidence.beside_theory` it keeps what was simulated with the contact-time model.
+    Elsewhere R and R_collisional are NaN. Unlike `verdicts.beside_theory` this keeps points
+    simulated with the contact-time model.
     """
     averages = [name for name in ("R", "R_collisional") if name in gas]
-    steady = gas[averages].where(gas.equilibrated > EQUILIBRATED)
+    steady = gas[averages].where(gas.equilibrated > STEADY_SHARE)
     return gas.assign(steady).assign(theory=gas.R.copy(data=theory_of(gas)))
 
 
-def _most(gas: xr.Dataset, name: str) -> dict[str, str]:
-    """Return the largest deviation from theory, and where it is; and that beyond the paper."""
-    off = gas[name] - gas.theory
-    inside = abs(off.where(off.r >= 0.8))
-    at = dict.fromkeys(("r", "beta"), MISSING)
+def _largest_deviation(gas: xr.Dataset, name: str) -> dict[str, str]:
+    """Return the largest deviation of the average `name` of R from theory, and its r and beta.
+
+    They are texts: `most`, its magnitude for r >= 0.8, as in the paper, with `r` and `beta`, and
+    `dissipative`, the largest for smaller r.
+    """
+    deviation = gas[name] - gas.theory
+    inside = abs(deviation.where(deviation.r >= 0.8))
+    location = dict.fromkeys(("r", "beta"), MISSING)
     if inside.notnull().any():
-        r, beta = (float(one) for one in inside.stack(at=("r", "beta")).idxmax("at").item())
-        at = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
-    beyond = off.where(off.r < 0.8)
-    return {"most": _up(inside), "dissipative": _text(float(beyond.max()), 3)} | at
+        r, beta = (
+            float(coordinate) for coordinate in inside.stack(at=("r", "beta")).idxmax("at").item()
+        )
+        location = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
+    beyond = deviation.where(deviation.r < 0.8)
+    return {"most": _largest_text(inside), "dissipative": _text(float(beyond.max()), 3)} | location
 
 
-def _up(values) -> str:
-    """Return the largest of values with three decimals."""
+def _largest_text(values) -> str:
+    """Return the largest of `values`, an array or a dataset of arrays, with three decimals."""
     largest = values.max()
-    one = largest.to_array().max() if isinstance(largest, xr.Dataset) else largest
-    return _text(float(one), 3)
+    scalar = largest.to_array().max() if isinstance(largest, xr.Dataset) else largest
+    return _text(float(scalar), 3)
 
 
 def _text(value: float, digits: int) -> str:
+    """Return a number as text with `digits` decimals; MISSING for NaN."""
     return MISSING if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def _at(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
-    """Return a value with its error; MISSING at a point that a small scale leaves out."""
+def _estimate_text(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
+    """Return the variable `name` of a reduced dataset at a point, with its error, as text.
+
+    It is MISSING at a point that was not simulated.
+    """
     if r not in gas.r or beta not in gas.beta:
         return MISSING
-    one = gas.sel(r=r, beta=beta)
-    if f"{name}_stderr" not in one:
-        return f"{float(one[name]):.4f}"
-    return f"{Estimate(float(one[name]), float(one[f'{name}_stderr']))}"
+    point = gas.sel(r=r, beta=beta)
+    if f"{name}_stderr" not in point:
+        return f"{float(point[name]):.4f}"
+    return f"{Estimate(float(point[name]), float(point[f'{name}_stderr']))}"
 
 
-def _of_rows(gas: xr.Dataset) -> dict[str, str]:
-    """Return R over time, over collisions, and of theory at the points of ROWS."""
-    found = {}
-    for name, place in ROWS.items():
-        found[f"sheared.{name}.time"] = _at(gas, "R", *place)
-        found[f"sheared.{name}.collisions"] = _at(gas, "R_collisional", *place)
-        found[f"sheared.{name}.theory"] = _at(gas, "theory", *place)
-    return found
+def _sheared_points(gas: xr.Dataset) -> dict[str, str]:
+    """Return R averaged over time, over collisions, and by theory at SHEARED_POINTS, as texts."""
+    texts = {}
+    for name, point in SHEARED_POINTS.items():
+        texts[f"sheared.{name}.time"] = _estimate_text(gas, "R", *point)
+        texts[f"sheared.{name}.collisions"] = _estimate_text(gas, "R_collisional", *point)
+        texts[f"sheared.{name}.theory"] = _estimate_text(gas, "theory", *point)
+    return texts
 
 
-def _counts(claims: Sequence[Mapping[str, Any]]) -> dict[str, str]:
-    """Return the numbers of statements of each verdict in words, the paper's and ours apart."""
+def _smooth_disks(rough: xr.Dataset) -> dict[str, str]:
+    """Return numbers of smooth disks (beta = -1) between rough walls at r = 0.9, as texts.
+
+    They are R, R if spins had the vertical energy, and the ratios of the vertical energy to the
+    horizontal one (`anisotropy`) and of E_rot to the vertical one (`spin`).
+    """
+    names = [f"walls.smooth.{name}" for name in ("R", "R_vertical", "anisotropy", "spin")]
+    if 0.9 not in rough.r or -1.0 not in rough.beta:
+        return dict.fromkeys(names, MISSING)
+    point = rough.sel(r=0.9, beta=-1.0)
+    vertical = 2.0 * float(point.vertical_share)  # over E_trans
+    spin = float(point.E_rot / point.E_trans)
+    values = vertical / (1.0 + vertical), vertical / (2.0 - vertical), spin / vertical
+    texts = map(_text, values, (3, 2, 2))
+    return dict(zip(names, [_estimate_text(rough, "R", 0.9, -1.0), *texts], strict=True))
+
+
+def _counts(claims: Sequence[Record]) -> dict[str, str]:
+    """Return the numbers of statements of each verdict in words, separately for ours.
+
+    `claims` are the entries of claims.json.
+    """
     words = IN_WORDS.split()
     counts: dict[str, str] = {}
     for name, ours in (("claims", False), ("claims.ours", True)):
-        verdicts = Counter(one["verdict"] for one in claims if one["ours"] == ours)
-        counts |= {f"{name}.{key}": words[verdicts[one]] for key, one in COUNTED.items()}
+        verdicts = Counter(claim["verdict"] for claim in claims if claim["ours"] == ours)
+        counts |= {
+            f"{name}.{key}": words[verdicts[verdict]] for key, verdict in VERDICT_KEYS.items()
+        }
         counts[f"{name}.all"] = words[verdicts.total()]
     return counts

@@ -1,181 +1,274 @@
-"""`roughgas run` simulates points of an experiment."""
+"""`roughgas run`: simulation of points of an experiment.
+
+A point is a combination of normal restitution r, roughness beta and a seed. R is E_rot/(E_rot +
+E_trans), the share of rotation in the energy per degree of freedom.
+"""
 
 import re
 import sys
-from argparse import Namespace
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughgas import config
 from roughgas.base import InputError, as_json
-from roughgas.cli.parser import check_outputs, labels
-from roughgas.config.labels import SPECIES, holder, names_of
+from roughgas.base.fields import RawSettings
+from roughgas.base.labels import (
+    SPECIES_PREFIX,
+    SWEPT,
+    GridPoint,
+    grid_points,
+    names_of,
+    species_settings,
+)
+from roughgas.cli.values import check_outputs, labels
 from roughgas.data.point import Point, read_point, write_point
-from roughgas.simulation import schedule
-from roughgas.simulation.points import points, variant_attributes
-from roughgas.simulation.restart import Initial
-from roughgas.simulation.saved import initial_of, seeded
+from roughgas.simulation import protocols
+from roughgas.simulation.checkpoint import checkpoint_path
+from roughgas.simulation.experiment import KEYS_OF_NO_POINT, Experiment
+from roughgas.simulation.finished_points import FinishedPoints
+from roughgas.simulation.initial_states import InitialState
+from roughgas.simulation.run_points import simulate_points, variant_attributes
+from roughgas.simulation.saved_states import initial_states_of, with_noise_source
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
-from roughgas.theory.prediction import over_collisions
+from roughgas.theory.prediction import describe_collisional_average
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
-"""The attributes that name a point."""
-NOT_TO_SET = (*config.NOT_OF_A_POINT, config.SWEPT, config.CASE, "extends")
-REACHED = {YES: "met", NO: "NOT met", UNKNOWN: "not known to be met"}
+"""The attributes that identify a point."""
+NO_POINT_SETTINGS = (*KEYS_OF_NO_POINT, SWEPT, config.CASE, "extends")
+"""Keys of experiments that are no settings of a single point, and illegal in --set."""
+TARGET_NOTES = {YES: "met", NO: "NOT met", UNKNOWN: "not known to be met"}
 
 
-def run(options: Namespace) -> None:
-    """Simulate the points that `options` name, and write each dataset as soon as it is there."""
-    initial, seed = initial_in(options)
-    at, settings = points_of(options, seed)
-    settings = config.point_settings(settings)
-    outputs = options.output or [_own_name(options, place) for place in at]
-    if len(outputs) != len(at):
-        raise InputError("--output", " ".join(outputs), f"name {len(at)}, one per point")
-    if options.output is None:
-        check_outputs(options, outputs)
-    if options.keep_state:
-        settings["keep_state"] = True
-    told = ["--from", options.start_from] if initial else []
-    where = options.experiment, settings, at, options.scale, outputs, initial
-    made = points(*where, told=told, checkpoints=True)
-    for output, point in zip(outputs, made, strict=True):
-        write_point(output, point)
-        if options.json:
-            print(_as_line(output, point), flush=True)
-        elif options.output is None:
-            from roughgas.cli.show import summary
+class Selection(NamedTuple):
+    """Points selected on a command line, and changes to the settings of their experiment: texts, as
+    they are written.
 
-            print(summary(output), flush=True)
-        else:
-            _say_done(output, point)
+    `experiment` is the name of an experiment or of a variant, `scale` a scale of the configuration,
+    `config` the path of the configuration. `changes` are KEY=VALUE, `observe` the names of
+    observables; with `keep_state` the last state of the particles is kept in the dataset.
+    """
+
+    experiment: str
+    scale: str
+    config: str | Path
+    settings: str | None  # JSON, in place of `config`
+    r: str | list[str]
+    beta: str | list[str]
+    seed: str | list[str] | None
+    changes: Sequence[str] = ()
+    observe: Sequence[str] = ()
+    keep_state: bool = False
 
 
-def initial_in(options: Namespace) -> tuple[list[Initial], Any]:
-    """Return the states in the file that a run goes on from, none where it starts anew; and the
-    seed of its noise, or a list of seeds."""
-    states: list[Initial] = []
-    if options.start_from is not None:
-        point = read_point(options.start_from)
+def write_points(
+    selection: Selection,
+    start_from: str | None,
+    reseed: list[str] | None,
+    output: list[str] | None,
+    json: bool,
+) -> None:
+    """Simulate points, and write the dataset of each as soon as it is finished.
+
+    The simulations continue from the last state of the dataset `start_from`, with noise of the
+    seeds `reseed`, texts, if there are any. `output` has a path for each point; if it is None,
+    datasets go into the present folder, and their summaries are printed. With `json` the results of
+    each point are printed as a line of JSON. If several points are interrupted, the same command
+    reuses those already finished. Raises InputError, OSError, and CollapseError for an inelastic
+    collapse.
+    """
+    initial, seed = initial_in(start_from, selection.seed, reseed)
+    name, selected, experiment = points_of(selection, seed)
+    paths = output or [_default_path(name, selection, coordinates) for coordinates in selected]
+    if len(paths) != len(selected):
+        raise InputError("--output", " ".join(paths), f"name {len(selected)}, one per point")
+    if output is None:
+        inputs = [selection.config, *([start_from] if start_from else [])]
+        check_outputs(paths, inputs, "POINT")
+    start_options = ["--from", start_from] if start_from and initial else []
+    arguments = name, experiment, selected, selection.scale, paths, initial
+    checkpoints = [*map(checkpoint_path, paths)]
+    finished = FinishedPoints(paths) if len(paths) > 1 else None
+    simulated = simulate_points(
+        *arguments, extra_arguments=start_options, checkpoints=checkpoints, finished=finished
+    )
+    write = write_point if finished is None else finished.write
+    with nullcontext() if finished is None else finished.advising():
+        for path, point in zip(paths, simulated, strict=True):
+            write(path, point)
+            if json:
+                print(_json_line(path, point), flush=True)
+            elif output is None:
+                from roughgas.cli.show import summary
+
+                print(summary(path), flush=True)
+            else:
+                _print_result(path, point)
+
+
+def initial_in(
+    start_from: str | None, seed: str | list[str] | None, reseed: str | list[str] | None
+) -> tuple[list[InitialState], Any]:
+    """Return the states saved in the dataset `start_from`, one per replica, and the seed or seeds
+    of the noise.
+
+    There are no states without a dataset. `reseed`, texts, are seeds of fresh noise for saved
+    states, in place of `seed`; without either, the run continues the noise of the saved state.
+    Raises InputError for a dataset without a saved state, for both `seed` and `reseed`, and for
+    `reseed` without a dataset.
+    """
+    states: list[InitialState] = []
+    if start_from is not None:
+        point = read_point(start_from)
         if "last_position" not in point:
             legal = "be a point that has kept its last state, by --keep-state"
-            raise InputError("--from", options.start_from, legal)
-        states = initial_of(point)
-    return seeded(states, options.seed, options.reseed)
+            raise InputError("--from", start_from, legal)
+        states = initial_states_of(point)
+    return with_noise_source(states, seed, reseed)
 
 
-def points_of(options: Namespace, seed: Any = None) -> tuple[list[config.Place], dict[str, Any]]:
-    """Return the places that are named, and the settings of their experiment.
+def points_of(
+    selection: Selection, seed: Any = None
+) -> tuple[str, list[GridPoint], Experiment[Any]]:
+    """Return the name of the experiment as spelled in paths, the selected (r, beta, seed), and the
+    settings of the experiment.
 
-    `seed`, one or a list, stands in place of that of the options, whose default is 1. Raises
+    `seed`, a number or a list, replaces the seeds of the selection, whose default is 1. Raises
     InputError for illegal values, and for a name that disagrees with --settings.
     """
-    settings = _settings(options)
-    chosen = options.seed if seed is None else seed
-    seeds = chosen if isinstance(chosen, list) else [str(1 if chosen is None else chosen)]
+    experiment = _experiment(selection)
+    seed_labels = selection.seed if seed is None else seed
+    seeds = (
+        seed_labels
+        if isinstance(seed_labels, list)
+        else [str(1 if seed_labels is None else seed_labels)]
+    )
     r, beta, seeds = (
         labels(f"--{name}", values)
-        for name, values in (("r", options.r), ("beta", options.beta), ("seed", seeds))
+        for name, values in (("r", selection.r), ("beta", selection.beta), ("seed", seeds))
     )
-    at = config.places(r, beta, seeds, prefix="--")
-    config.check_one_variant(options.experiment, settings)
-    variant_attributes(options.experiment, settings)
-    return at, settings
+    selected = grid_points(r, beta, seeds, prefix="--")
+    name = config.WrittenExperiment(experiment.raw).spelled_name(selection.experiment)
+    variant_attributes(name, experiment)
+    return name, selected, experiment
 
 
-def _settings(options: Namespace) -> dict[str, Any]:
-    """Return the settings of the experiment, with what --set and --observe change."""
-    if options.settings is not None:
-        found = config.from_text(options.settings, "--settings", options.checked)
+def _experiment(selection: Selection) -> Experiment[Any]:
+    """Return the settings of the selected experiment, with the changes of --set, --observe and
+    --keep-state. Raises InputError if they are illegal."""
+    if selection.settings is None:
+        written = config.load_experiment(selection.config, selection.experiment, selection.scale)
+        key = selection.experiment
     else:
-        found = config.load_experiment(options.config, options.experiment, options.scale)
-    told, watched = getattr(options, "changes", ()), getattr(options, "observe", None)
-    if watched:
-        found = config.merged(found, {"observables": {name: {} for name in watched}})
-    if told or watched:
-        found = config.validated(changed_by(found, told), options.experiment)
-    if told or watched or not options.checked:
-        schedule.check(found)
-    return found
+        key = "--settings"
+        written = config.WrittenExperiment.from_text(selection.settings, key)
+    written.check_has_points(selection.experiment)
+    observables: dict[str, RawSettings] = {name: {} for name in selection.observe or ()}
+    if observables:
+        written = written.changed({"observables": observables})
+    if observables or selection.changes:
+        written, key = with_assignments(written, selection.changes), selection.experiment
+    if selection.keep_state:
+        written = written.changed({"keep_state": True})
+    experiment = written.experiment(key)
+    protocols.check_experiment(experiment)
+    return experiment
 
 
-def _own_name(options: Namespace, place: config.Place) -> str:
-    """Return the file in the present folder for a point that was given none.
+def _default_path(name: str, selection: Selection, coordinates: GridPoint) -> str:
+    """Return the default path of the dataset of the point at `coordinates`, in the present folder.
 
-    What --set changes is a part of its name: mu0.3 for effects.friction.mu=0.3.
+    `name` is the name of the experiment. The changes of --set are in the file's name: mu0.3 for
+    effects.friction.mu=0.3.
     """
-    r, beta, seed = place.labels
-    pairs = (one.partition("=") for one in options.changes)
-    told = [re.sub(r"[^\w.+-]", "", f"{key.rpartition('.')[2]}{text}") for key, _, text in pairs]
-    scale = [] if options.scale == config.PAPER else [options.scale]
-    name = [options.experiment.replace("/", "_"), *told, *scale]
-    return "_".join([*name, f"r{r}", f"beta{beta}", f"seed{seed}.nc"])
+    r, beta, seed = coordinates.labels
+    assignments = (change.partition("=") for change in selection.changes)
+    changes = [
+        re.sub(r"[^\w.+-]", "", f"{key.rpartition('.')[2]}{text}") for key, _, text in assignments
+    ]
+    scale = [] if selection.scale == config.PAPER else [selection.scale]
+    point = [f"r{r}", f"beta{beta}", f"seed{seed}.nc"]
+    return "_".join([name.replace("/", "_"), *changes, *scale, *point])
 
 
-def _as_line(output: str, point: Point) -> str:
-    """Return a line of JSON: what names a point, and all its single numbers."""
-    about = {name: point.attributes[name] for name in IDENTITY if name in point.attributes}
-    found = {name: one for name, one in point.variables.items() if np.ndim(one) == 0}
-    return as_json({"file": output} | about | found, indent=None)
+def _json_line(output: str, point: Point) -> str:
+    """Return a line of JSON: the path `output` of a point's dataset, the identity of the point, and
+    its scalar variables."""
+    identity = {name: point.attributes[name] for name in IDENTITY if name in point.attributes}
+    scalars = {
+        name: variable for name, variable in point.variables.items() if np.ndim(variable) == 0
+    }
+    return as_json({"file": output} | identity | scalars, indent=None)
 
 
-def _say_done(output: str, point: Point) -> None:
-    """Print the result of a point, and what it took."""
-    found = point.variables
-    name = "R" if "R" in found else "E_trans"
-    value = f"{Estimate(float(found[name]), float(found[f'{name}_stderr']))}"
-    if "R_collisional" in found:
-        errors = float(found["R_collisional"]), float(found["R_collisional_stderr"])
-        said = over_collisions(point.attributes, found)
-        value += f" over time, {Estimate(*errors)} over collisions ({said})"
-    if "R_corrected" in found:
-        value += f", {float(found['R_corrected']):.4f} corrected for the number of particles"
-    if "target_met" in found:
-        value += f", target {REACHED[int(found['target_met'])]}"
-    took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
+def _print_result(output: str, point: Point) -> None:
+    """Print on stderr the path `output` of a point's dataset, R with its error (E_trans without
+    spin), and the cost of the simulation."""
+    variables = point.variables
+    name = "R" if "R" in variables else "E_trans"
+    value = f"{Estimate(float(variables[name]), float(variables[f'{name}_stderr']))}"
+    if "R_collisional" in variables:
+        collisional = float(variables["R_collisional"]), float(variables["R_collisional_stderr"])
+        meaning = describe_collisional_average(point.attributes, variables)
+        value += f" over time, {Estimate(*collisional)} over collisions ({meaning})"
+    if "R_corrected" in variables:
+        value += f", {float(variables['R_corrected']):.4f} corrected for the number of particles"
+    if "target_met" in variables:
+        value += f", target {TARGET_NOTES[int(variables['target_met'])]}"
+    took = (
+        f"{int(variables['collisions']):,} collisions in {float(variables['kernel_seconds']):.1f} s"
+    )
     print(f"{output}: {name} = {value}, {took}", file=sys.stderr)
 
 
-def changed_by(settings: Mapping[str, Any], told: Iterable[str]) -> dict[str, Any]:
-    """Return settings with what `told` changes, each KEY=VALUE, VALUE in YAML; null removes a key.
+def with_assignments(
+    written: config.WrittenExperiment, assignments: Iterable[str]
+) -> config.WrittenExperiment:
+    """Return an experiment with the changes `assignments`, each KEY=VALUE, VALUE in YAML; null
+    removes a key.
 
-    A KEY is dotted, as schedule.measure; as in a sweep `effects.` may be left out, a species be
-    named, and `box` be a width alone. Raises InputError for another form, and for a key given
-    twice; whether keys and values are legal is left to the schema.
+    A KEY is dotted, as schedule.measure. As in a sweep, `effects.` may be omitted, a species may be
+    named, and `box` may be a width alone. Raises InputError for another form, and for a key given
+    twice; whether keys and values are legal is decided where settings are checked.
     """
-    from roughgas.config.reading import parse_yaml
+    from roughgas.base.reading import parse_yaml
 
-    found, seen = dict(settings), set()
-    for one in told:
-        key, _, text = one.partition("=")
+    keys: set[str] = set()
+    for assignment in assignments:
+        key, _, text = assignment.partition("=")
         if not key or not text:
-            raise InputError("--set", one, "be KEY=VALUE, such as particles=80")
-        if key in seen:
+            raise InputError("--set", assignment, "be KEY=VALUE, such as particles=80")
+        if key in keys:
             raise InputError("--set", key, "be given once")
-        if key.partition(".")[0] in NOT_TO_SET:
+        if key.partition(".")[0] in NO_POINT_SETTINGS:
             raise InputError("--set", key, "be a setting of one point")
-        seen.add(key)
-        found = config.changed_by(found, _change(found, key, parse_yaml(text, f"--set {key}")))
-    return found
+        keys.add(key)
+        written = _with_value(written, key, parse_yaml(text, f"--set {key}"))
+    return written
 
 
-def _change(settings: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """Return the change to settings that gives a dotted key this value."""
+def _with_value(
+    written: config.WrittenExperiment, key: str, value: Any
+) -> config.WrittenExperiment:
+    """Return an experiment with the setting at a dotted `key` replaced by `value`, as in
+    `with_assignments`. Raises InputError for an unknown species."""
     from roughgas import effects
 
-    part = key.rpartition(".")[0]
-    if part.startswith(SPECIES):
-        if holder(settings, part) is None:
-            known = ", ".join(names_of(settings)) or "there are none"
-            raise InputError("--set", key, f"name one of species: {known}")
-        return config.swept_to(settings, key, value)
+    name = key.rpartition(".")[0]
+    if name.startswith(SPECIES_PREFIX):
+        species = written.raw.get("species") or []
+        if species_settings(species, name) is None:
+            legal_names = ", ".join(names_of(species)) or "there are none"
+            raise InputError("--set", key, f"name one of species: {legal_names}")
+        return written.at_level(key, value)
     if key == "box" and isinstance(value, int | float):
-        return config.swept_to(settings, key, value)
+        return written.at_level(key, value)
     names = key.split(".")
-    if names[0] in effects.schema()["properties"]:
+    if names[0] in effects.EFFECTS:
         names.insert(0, "effects")
-    for name in reversed(names):
-        value = {name: value}
-    return value
+    for inner in reversed(names):
+        value = {inner: value}
+    return written.changed(value)

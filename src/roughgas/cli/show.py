@@ -1,9 +1,13 @@
-"""`roughgas show`: a summary of any dataset that the pipeline writes."""
+"""`roughgas show`: a summary of any dataset that the pipeline writes.
+
+R = E_rot/(E_rot + E_trans), from energies per degree of freedom; r is the normal restitution, beta
+the roughness. A row of a table is a list of texts, one for each column.
+"""
 
 import json
 import math
-from argparse import Namespace
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,418 +15,544 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas import config
-from roughgas.base import as_json, columns, from_json, on_one_line
-from roughgas.base.files import module_of
+from roughgas.base import (
+    Attributes,
+    InputError,
+    NamedValues,
+    Record,
+    as_json,
+    columns,
+    from_json,
+    on_one_line,
+)
+from roughgas.base.files import study_module
+from roughgas.config.study_folders import folders
+from roughgas.config.written_study import WrittenStudy
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
-from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
-from roughgas.data.variables import TRUSTED
+from roughgas.data.reduced import STEADY_SHARE, particles_of
+from roughgas.data.variables import TRUSTED_SUFFIX, third_axis
 from roughgas.effects.species import packing
-from roughgas.results.products import rows as rows_of
-from roughgas.results.products import why_wide
+from roughgas.results.tables import rows as rows_of
+from roughgas.results.tables import wide_note
+from roughgas.scene.settings import scene_settings
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
 from roughgas.theory.prediction import (
+    describe_collisional_average,
     equation_of,
-    like_theory,
-    over_collisions,
     ratio_of_point,
+    theory_averages_over_collisions,
 )
 
-FEW = 0.01
-"""Share of contacts altered by the contact-time model, above which a result depends on it."""
-OF_SPECIES = ("E_trans", "E_rot", "R")
-PARTS = {"species", "other"}  # what is over nothing else is shown value by value
-MOST_VALUES = 4  # of a variable, that are all shown
-MOST_NAMES = 4  # of variables with the same reason for doubt
-MARK = "?"
-FLAGS = {YES: True, NO: False, UNKNOWN: None}
-QUOTED = {netcdf.POINT: ("experiment_json", "command"), netcdf.TASK: ("settings_json",)}
-"""Attributes of each kind that a summary quotes."""
-BOOKS = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
+CONTACT_TIME_TOLERANCE = 0.01
+"""Largest share of contacts altered by the contact-time model at which R counts as independent of
+it."""
+SPECIES_AVERAGES = ("E_trans", "E_rot", "R")
+SPECIES_DIMENSIONS = {"species", "other"}  # variables without other dimensions are shown in full
+MAX_VALUES_LISTED = 4  # of a variable; the range of longer ones is shown
+MAX_NAMES_LISTED = 4  # of variables with the same reason for doubt
+DOUBT_MARK = "?"
+FLAG_VALUES = {YES: True, NO: False, UNKNOWN: None}
+REQUIRED_ATTRIBUTES = {
+    netcdf.POINT: ("experiment_json", "command"),
+    netcdf.TASK: ("settings_json",),
+}
+"""Attributes that the summary of each kind of dataset quotes."""
+ENERGY_BALANCE = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
 SHAPES = {2: "disks", 3: "spheres"}
-BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
-TRUST = {
+BLOCK_CHARACTERS, PLOT_WIDTH = "▁▂▃▄▅▆▇█", 48
+TRUST_NOTES = {
     YES: "",
     NO: " (not to be trusted: no steady state, or too short a run)",
     UNKNOWN: " (whether to trust it is not known: too little was measured)",
 }
-MET = {YES: "met", NO: "NOT met", UNKNOWN: "not known: too little was measured"}
-STEADY = {
+TARGET_NOTES = {YES: "met", NO: "NOT met", UNKNOWN: "not known: too little was measured"}
+STEADY_NOTES = {
     YES: "yes",
     NO: "NOT found: energies or R still drift",
     UNKNOWN: "not known: too little was measured",
 }
 
 
-def show(options: Namespace) -> None:
-    """Print summaries, an empty line between them."""
-    for number, path in enumerate(options.files):
-        if options.json:
+def print_summaries(paths: Iterable[str | Path], json: bool) -> None:
+    """Print the summary of each dataset, separated by empty lines; with `json`, its attributes and
+    scalar variables as a line of JSON.
+
+    Raises InputError for files of other programs, and OSError.
+    """
+    for number, path in enumerate(paths):
+        if json:
             kind, data = _read(path)
             attributes = {"attributes": data.attrs} if hasattr(data, "attrs") else {}
-            about = {"file": path, "kind": kind} | attributes
-            print(as_json(about | KINDS[kind][1](data), indent=None))
+            record = {"file": path, "kind": kind} | attributes
+            print(as_json(record | SUMMARIES[kind][1](data), indent=None))
         else:
             print("\n" * (number > 0) + summary(path))
 
 
 def summary(path: str | Path) -> str:
-    """Return the text about a dataset. Raises InputError for files of other programs."""
+    """Return the summary of the dataset at `path` as text. Raises InputError for files of other
+    programs."""
     kind, data = _read(path)
-    lines = f"{path}: {kind}\n\n{KINDS[kind][0](data)}".split("\n")
+    lines = f"{path}: {kind}\n\n{SUMMARIES[kind][0](data)}".split("\n")
     return "\n".join(map(on_one_line, lines))
 
 
 def _read(path: str | Path) -> tuple[str, Any]:
-    """Return the kind of a file, one of KINDS, and what is in it."""
+    """Return the kind of the dataset at `path`, a key of SUMMARIES, and its content: a Dataset, or
+    the Datasets of studies by name."""
     with netcdf.opened(path) as file:
-        kind = netcdf.kind_of(file)
-        netcdf.require(netcdf.attributes_of(file), QUOTED.get(kind or "", ()), path)
-    data = netcdf.read_groups(path) if kind == netcdf.STUDIES else _printable(read_netcdf(path))
+        kind = netcdf.file_type_of(file)
+        netcdf.require(netcdf.attributes_of(file), REQUIRED_ATTRIBUTES.get(kind or "", ()), path)
+    data = (
+        netcdf.read_groups(path)
+        if kind == netcdf.STUDIES
+        else _with_attributes_on_one_line(read_netcdf(path))
+    )
     return (kind or "").removeprefix("a "), data
 
 
-def _printable(data: Dataset) -> Dataset:
-    """Return a dataset whose attributes are all on one line: another program may have set them."""
-    words = {name: on_one_line(one) for name, one in data.attrs.items() if isinstance(one, str)}
-    return data.assign_attrs(words)
+def _with_attributes_on_one_line(data: Dataset) -> Dataset:
+    """Return a dataset with the control characters in its attributes escaped: other programs may
+    have set them."""
+    texts = {name: on_one_line(text) for name, text in data.attrs.items() if isinstance(text, str)}
+    return data.assign_attrs(texts)
 
 
-def _cost(data: Dataset) -> list[str]:
+def _cost_row(data: Dataset) -> list[str]:
+    """Return a row (title, text) on the number of collisions, the CPU time in s, and collisions per
+    second."""
     collisions, seconds = int(data.collisions), float(data.kernel_seconds)
     rate = f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
     return ["cost", f"{collisions:,} collisions in {seconds:.2f} s of CPU time{rate}"]
 
 
-def _point_record(point: Dataset) -> dict[str, Any]:
-    """Return the single numbers of a point, and those of theory where particles spin."""
-    found = scalars(point)
-    if "R" in found:
+def _point_record(point: Dataset) -> NamedValues:
+    """Return the scalar variables of a point by name; if particles spin, with R of theory and the
+    residual, R minus R of theory."""
+    variables = scalars(point.reset_coords(drop=True))  # the coordinates are attributes too
+    if "R" in variables:
         expected = ratio_of_point(point)
-        found |= {"R_theory": expected, "residual": found["R"] - expected}
-    return {"variables": found}
+        variables |= {"R_theory": expected, "residual": variables["R"] - expected}
+    return {"variables": variables}
 
 
 def _point_text(point: Dataset) -> str:
-    about = point.attrs
-    variant = f"/{about['variant']}" if "variant" in about else ""
+    """Return the summary of a point as text, to stand below a title."""
+    attributes = point.attrs
+    variant = f"/{attributes['variant']}" if "variant" in attributes else ""
     rows = [
-        ["experiment", f"{about['experiment']}{variant}, scale {about['scale']}"],
-        *_settings(about),
+        ["experiment", f"{attributes['experiment']}{variant}, scale {attributes['scale']}"],
+        *_settings_rows(attributes),
         ["", ""],
-        *(_ratio(point) if "R" in point else []),
-        *_measured(point),
-        _cost(point),
+        *(_ratio_rows(point) if "R" in point else []),
+        *_measurement_rows(point),
+        _cost_row(point),
     ]
-    parts = columns(rows), _by_species(point), observed(point), _books(point)
-    return "\n\n".join([*filter(None, parts), f"To make it again:\n{about['command']}"])
+    sections = (
+        columns(rows),
+        _species_table(point),
+        observed_table(point),
+        _energy_balance_table(point),
+    )
+    return "\n\n".join([*filter(None, sections), f"To make it again:\n{attributes['command']}"])
 
 
-def _settings(about: Mapping[str, Any]) -> Iterator[list[str]]:
-    """Yield rows with what was simulated, and for how long, from attributes."""
-    experiment = from_json(about["experiment_json"], "settings of the dataset")
+def _settings_rows(attributes: Attributes) -> Iterator[list[str]]:
+    """Yield rows (title, text) on the settings in the attributes of a point: r, beta, seed, gas,
+    effects, schedule."""
+    experiment = from_json(attributes["experiment_json"], "settings of the dataset")
     netcdf.require(experiment, ("particles", "box", "effects"), "its settings")
-    noise = ", fresh noise for a saved state" if about.get("reseeded") else ""
-    point = f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}{noise}"
+    noise = ", fresh noise for a saved state" if attributes.get("reseeded") else ""
+    point = (
+        f"r = {attributes['r']:g}, beta = {attributes['beta']:g}, seed {attributes['seed']}{noise}"
+    )
     yield ["point", point]
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
-    filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
+    has_volume = "open" not in experiment["box"]
+    packing_text = f", packing {packing(scene_settings(experiment)):.3g}" if has_volume else ""
     shape = SHAPES[len(experiment["box"])]
-    yield ["gas", f"{experiment['particles']} {shape}, box {box} a{filled}"]
+    yield ["gas", f"{experiment['particles']} {shape}, box {box} a{packing_text}"]
     if layer := experiment.get("layer"):
-        yield ["layer", f"{_listed(layer)}, in diameters and cycles"]
-    for number, (name, one) in enumerate(experiment["effects"].items()):
-        yield ["" if number else "effects", f"{name} ({_listed(one)})"]
+        yield ["layer", f"{_settings_text(layer)}, in diameters and cycles"]
+    for number, (name, settings) in enumerate(experiment["effects"].items()):
+        yield ["" if number else "effects", f"{name} ({_settings_text(settings)})"]
     if schedule := experiment.get("schedule"):
-        yield ["schedule", _listed(schedule)]
+        yield ["schedule", _settings_text(schedule)]
 
 
-def _listed(settings: Mapping[str, Any]) -> str:
+def _settings_text(settings: Record) -> str:
+    """Return settings as text: names and values, separated by commas."""
     return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 
-def _ratio(point: Dataset) -> Iterator[list[str]]:
-    """Yield rows on R: its averages, their errors, and theory."""
-    R, half = float(point.R), float(point.R_ci95)
-    digits = decimals_of(half) if 0.0 < half < 1.0 else 4
-    trust, over_time = TRUST[int(point.R_ci95_trusted)], "R_collisional" in point
+def _ratio_rows(point: Dataset) -> Iterator[list[str]]:
+    """Yield rows (title, text) on R of a point: its averages with errors, theory, and a plot of R
+    over time."""
+    R, half_width = float(point.R), float(point.R_ci95)
+    digits = decimals_of(half_width) if 0.0 < half_width < 1.0 else 4
+    trust_note, over_time = TRUST_NOTES[int(point.R_ci95_trusted)], "R_collisional" in point
     yield ["R", f"{_estimate(point, 'R')}{', averaged over time' * over_time}"]
-    known = half > 0.0  # it is 0 where R never changes, as without contacts
-    interval = f"{R - half:.{digits}f} to {R + half:.{digits}f}" if known else "not known"
-    yield ["95 % interval", f"{interval}{trust}"]
-    if lack := point.R_ci95_trusted.attrs.get("comment"):
-        yield ["lacking", lack]
+    has_interval = half_width > 0.0  # it is 0 if R never changes, as without contacts
+    interval = (
+        f"{R - half_width:.{digits}f} to {R + half_width:.{digits}f}"
+        if has_interval
+        else "not known"
+    )
+    yield ["95 % interval", f"{interval}{trust_note}"]
+    if reason := point.R_ci95_trusted.attrs.get("comment"):
+        yield ["lacking", reason]
     if "R_flow_shift" in point:
-        said = f"by {float(point.R_flow_shift):+.4f} ({abs(float(point.R_flow_sigma)):.1f} sigma)"
-        yield ["over the local flow", f"R is higher {said}"]
+        note = f"by {float(point.R_flow_shift):+.4f} ({abs(float(point.R_flow_sigma)):.1f} sigma)"
+        yield ["over the local flow", f"R is higher {note}"]
     if "R_corrected" in point:
-        said = "of the mean energies, with D (N - 1) translational degrees of freedom"
-        yield ["R_corrected", f"{float(point.R_corrected):.4f}, {said}"]
+        note = "of the mean energies, with D (N - 1) translational degrees of freedom"
+        yield ["R_corrected", f"{float(point.R_corrected):.4f}, {note}"]
     if over_time:
-        said = f"averaged over collisions, {over_collisions(point.attrs, point)}"
-        yield ["R_collisional", f"{_estimate(point, 'R_collisional')}, {said}"]
+        note = f"averaged over collisions, {describe_collisional_average(point.attrs, point)}"
+        yield ["R_collisional", f"{_estimate(point, 'R_collisional')}, {note}"]
     if "target_met" in point:
         settings = from_json(point.attrs["experiment_json"], "settings of the dataset")
-        wanted, blocks = settings["schedule"]["target_stderr"], int(point.target_blocks)
-        found = f"standard error {wanted:g}: {MET[int(point.target_met)]}"
-        yield ["target", found + f", in {blocks} times the schedule" * (blocks > 1)]
-    yield ["theory", theory_beside(point, R, ratio_of_point(point))]
+        target, lengthening = settings["schedule"]["target_stderr"], int(point.target_blocks)
+        outcome = f"standard error {target:g}: {TARGET_NOTES[int(point.target_met)]}"
+        yield ["target", outcome + f", in {lengthening} times the schedule" * (lengthening > 1)]
+    yield ["theory", theory_comparison(point, R, ratio_of_point(point))]
     series = point.R_series.values[np.isfinite(point.R_series.values)]
-    parts = np.array([part.mean() for part in np.array_split(series, min(WIDTH, len(series)))])
-    low, high = parts.min(), parts.max()
-    heights = (parts - low) / ((high - low) or 1.0) * (len(BLOCKS) - 1)
-    blocks_of_time = "".join(BLOCKS[round(height)] for height in heights)
+    means = np.array(
+        [block.mean() for block in np.array_split(series, min(PLOT_WIDTH, len(series)))]
+    )
+    low, high = means.min(), means.max()
+    heights = (means - low) / ((high - low) or 1.0) * (len(BLOCK_CHARACTERS) - 1)
+    blocks_of_time = "".join(BLOCK_CHARACTERS[round(height)] for height in heights)
     yield ["R(t)", f"{blocks_of_time}  {low:.3f} to {high:.3f}"]
 
 
-def _measured(point: Dataset) -> Iterator[list[str]]:
-    """Yield rows on energies, the steady state, and contacts that were altered or logged."""
-    when = ", as the measurement begins" if "plateau_end" in point else ""
+def _measurement_rows(point: Dataset) -> Iterator[list[str]]:
+    """Yield rows (title, text) on the energies of a point, its steady state, and altered and logged
+    contacts."""
+    time_note = ", as the measurement begins" if "plateau_end" in point else ""
     for name in ("E_trans", "E_rot"):
         if name in point:
             unit = unit_of(point[name].attrs)
-            yield [name, f"{_estimate(point, name)} {unit}, per degree of freedom{when}"]
-    yield ["steady state", _steady(point)]
+            yield [name, f"{_estimate(point, name)} {unit}, per degree of freedom{time_note}"]
+    yield ["steady state", _steady_text(point)]
     share = float(point.get("contact_time_fraction", 0.0))
     if share > 0.0:
-        said = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"
-        yield ["contact time", f"{said}: R depends on it" if share > FEW else said]
+        note = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"
+        yield [
+            "contact time",
+            f"{note}: R depends on it" if share > CONTACT_TIME_TOLERANCE else note,
+        ]
     if "contacts_lost" in point:
         logged, lost = point.sizes["contact"], int(point.contacts_lost)
-        some = f"the last {logged:,}; {lost:,} before them are lost"
-        yield ["contacts logged", some if lost else f"all {logged:,}"]
+        partial_log = f"the last {logged:,}; {lost:,} before them are lost"
+        yield ["contacts logged", partial_log if lost else f"all {logged:,}"]
 
 
-def _steady(point: Dataset) -> str:
-    found, made = STEADY[int(point.equilibrated)], float(point.get("measured_collisions", math.nan))
+def _steady_text(point: Dataset) -> str:
+    """Return in words whether the state of a point was steady, and the window of the measurement
+    with its units."""
+    outcome, collisions = (
+        STEADY_NOTES[int(point.equilibrated)],
+        float(point.get("measured_collisions", math.nan)),
+    )
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
     units = unit_of(point.measured_from.attrs)
-    counted = f" ({made:.4g} collisions per particle)" if "time" in point else ""
-    return f"{found}; measured from {float(point.measured_from):g}{end}, in {units}{counted}"
+    count_note = f" ({collisions:.4g} collisions per particle)" if "time" in point else ""
+    return f"{outcome}; measured from {float(point.measured_from):g}{end}, in {units}{count_note}"
 
 
-def _books(point: Dataset) -> str:
-    """Return what each source has put into each motion, where that is known."""
-    if not set(point.variables) >= BOOKS:
+def _energy_balance_table(point: Dataset) -> str:
+    """Return a table of the energy per particle that each source has put into each motion of a
+    point; "" if it was not measured."""
+    if not set(point.variables) >= ENERGY_BALANCE:
         return ""
     rows = [["energy put in, per particle", *point.motion.values]]
-    for source, put_in in zip(point.source.values, point.energy_input.values, strict=True):
-        rows.append([f"  {source}", *(f"{one:.6g}" for one in put_in)])
-    rows.append(["  what the gas has gained", *(f"{one:.6g}" for one in point.energy_gain.values)])
+    for source, inputs in zip(point.source.values, point.energy_input.values, strict=True):
+        rows.append([f"  {source}", *(f"{energy:.6g}" for energy in inputs)])
+    rows.append(
+        ["  what the gas has gained", *(f"{energy:.6g}" for energy in point.energy_gain.values)]
+    )
     imbalance, units = float(point.energy_imbalance), unit_of(point.energy_gain.attrs)
     return f"{columns(rows, numbers=True)}\n  in {units}; energy balance closes to {imbalance:.1g}"
 
 
-def _reduced_record(data: Dataset) -> dict[str, Any]:
+def _reduced_record(data: Dataset) -> NamedValues:
+    """Return the results of each point of a reduced dataset, by name of the column, as a list under
+    `points`."""
     rows = rows_of(data)
     return {"points": [{k: value for k, value in row.items() if value != ""} for row in rows]}
 
 
 def _reduced_text(data: Dataset) -> str:
-    about, swept = data.attrs, third_axis(data.attrs)
+    """Return the summary of a reduced dataset as text: a row for each point, its means over
+    seeds."""
+    attributes, swept = data.attrs, third_axis(data.attrs)
     axes = [*([swept] if swept else []), "r", "beta"]
-    found = ["R", "95 %", "theory", "residual"] if "R" in data else ["E_trans"]
-    found += ["R_collisional"] * ("R_collisional" in data)
-    table = [[*axes, "seeds", *found, "steady"]]
+    result_columns = ["R", "95 %", "theory", "residual"] if "R" in data else ["E_trans"]
+    result_columns += ["R_collisional"] * ("R_collisional" in data)
+    table = [[*axes, "seeds", *result_columns, "steady"]]
     for row in rows_of(data):
         values = [row["value"], row["r"], row["beta"]][-len(axes) :]
-        place = [value if isinstance(value, str) else f"{value:g}" for value in values]
+        cells = [value if isinstance(value, str) else f"{value:g}" for value in values]
         steady = "not known" if row["equilibrated"] < 0 else "NO"
-        steady = "yes" if row["equilibrated"] > EQUILIBRATED else steady
-        table.append([*place, f"{row['n_seeds']:.0f}", *_found(row), steady])
-    over = f"{swept}, r and beta" if swept else "r and beta"
-    filled = f", packing {about['packing']:.3g}" if "packing" in about else ""
-    head = [
-        ["experiment", f"{about['experiment']}, scale {about['scale']}"],
-        ["gas", f"{particles_of(data)} {SHAPES[int(about['dimension'])]}{filled}"],
-        ["points", f"{len(table) - 1} over {over}"],
-        _cost(data.sum()),
+        steady = "yes" if row["equilibrated"] > STEADY_SHARE else steady
+        table.append([*cells, f"{row['n_seeds']:.0f}", *_result_cells(row), steady])
+    axes_text = f"{swept}, r and beta" if swept else "r and beta"
+    packing_text = f", packing {attributes['packing']:.3g}" if "packing" in attributes else ""
+    header = [
+        ["experiment", f"{attributes['experiment']}, scale {attributes['scale']}"],
+        ["gas", f"{particles_of(data)} {SHAPES[int(attributes['dimension'])]}{packing_text}"],
+        ["points", f"{len(table) - 1} over {axes_text}"],
+        _cost_row(data.sum()),
     ]
-    note = "Energies per degree of freedom; their error is the scatter over seeds."
+    notes = "Energies per degree of freedom; their error is the scatter over seeds."
     if "R" in data:
-        note = "95 %: half width of the interval; ?: it may be too narrow, as the run is short."
-        note += f"{why_wide(data)}\nTheory: {equation_of(about).name}; residual: R minus theory."
+        notes = "95 %: half width of the interval; ?: it may be too narrow, as the run is short."
+        notes += (
+            f"{wide_note(data)}\nTheory: {equation_of(attributes).name}; residual: R minus theory."
+        )
     if "R_collisional" in data:
-        said = over_collisions(about, data)
-        note += f"\nR is averaged over time, R_collisional over collisions, {said}."
-    return f"{columns(head)}\n\n{columns(table, numbers=True)}\n\n{note}"
+        average_note = describe_collisional_average(attributes, data)
+        notes += f"\nR is averaged over time, R_collisional over collisions, {average_note}."
+    return f"{columns(header)}\n\n{columns(table, numbers=True)}\n\n{notes}"
 
 
-def _found(row: dict[str, Any]) -> list[str]:
-    """Return the cells of the result; a column that is not there is empty in `row`."""
+def _result_cells(row: Record) -> list[str]:
+    """Return the cells of a point's result as texts: R with error, 95 % interval, theory, residual
+    and average over collisions; without spin E_trans alone.
+
+    `row` has the variables of a point by name, "" for variables that the dataset lacks.
+    """
     name = "R" if row["R"] != "" else "E_trans"
     value = f"{Estimate(row[name], row[f'{name}_stderr'] or math.nan)}"
     if name == "E_trans":
         return [value]
-    half = f"{row['R_ci95']:.4f}{'' if row['R_ci95_trusted'] == 1.0 else '?'}"
+    interval = f"{row['R_ci95']:.4f}{'' if row['R_ci95_trusted'] == 1.0 else '?'}"
     collisional = row["R_collisional"], row["R_collisional_stderr"]
-    beside = [] if "" in collisional else [f"{Estimate(*collisional)}"]
-    return [value, half, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}", *beside]
+    collisional_cell = [] if "" in collisional else [f"{Estimate(*collisional)}"]
+    return [value, interval, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}", *collisional_cell]
 
 
-def theory_beside(point: Dataset, R: float, expected: float) -> str:
-    """Return what theory says of R, and how far off R is; or why it says nothing."""
+def theory_comparison(point: Dataset, R: float, expected: float) -> str:
+    """Return in words R of theory (`expected`) with the deviation of the measured R of a point, or
+    the reason why there is no theory (NaN)."""
     name = equation_of(point.attrs, point).name
     if "stages" in point.attrs:
         return f"none: settings change in {point.attrs['stages']} stages"
     if math.isnan(expected):
-        why = "not known for this gas"
+        reason = "not known for this gas"
         if float(point.attrs["beta"]) == -1.0:
-            why = "at beta = -1 contacts change no spin, and spins that are 0 stay so"
-        return f"none ({name}): {why}"
-    found = f"{expected:.4f}, {name}: R is {_beside(R, expected)} it"
-    if "R_collisional" in point and like_theory(point):
-        found += f", R_collisional {_beside(float(point.R_collisional), expected)}"
-    return found
+            reason = "at beta = -1 contacts change no spin, and spins that are 0 stay so"
+        return f"none ({name}): {reason}"
+    comparison = f"{expected:.4f}, {name}: R is {_deviation(R, expected)} it"
+    if "R_collisional" in point and theory_averages_over_collisions(point):
+        comparison += f", R_collisional {_deviation(float(point.R_collisional), expected)}"
+    return comparison
 
 
-def _beside(R: float, expected: float) -> str:
+def _deviation(R: float, expected: float) -> str:
+    """Return in words the distance of the measured R from R of theory (`expected`), above or
+    below."""
     return f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
 
 
-def _by_species(point: Dataset) -> str:
-    """Return a row for each species of a mixture; nothing where particles are alike."""
+def _species_table(point: Dataset) -> str:
+    """Return a table of the averages in SPECIES_AVERAGES, a row for each species of a mixture; ""
+    for a point without species."""
     if "species" not in point:
         return ""
-    there = [name for name in OF_SPECIES if f"{name}_species" in point]
-    rows = [["species", "particles", *there]]
+    averages = [name for name in SPECIES_AVERAGES if f"{name}_species" in point]
+    rows = [["species", "particles", *averages]]
     for k, name in enumerate(point.species.values):
-        one = point.isel(species=k)
-        found = [_estimate(one, f"{name}_species") for name in there]
-        rows.append([str(name), str(int(one.species_particles)), *found])
+        species_data = point.isel(species=k)
+        cells = [_estimate(species_data, f"{name}_species") for name in averages]
+        rows.append([str(name), str(int(species_data.species_particles)), *cells])
     return columns(rows, numbers=True)
 
 
-def observed(point: Dataset) -> str:
-    """Return a row for each result of an observable, and what it is over; one for each species, or
-    pair of species, where it is over nothing else. Beneath, why errors are not trusted."""
+def observed_table(point: Dataset) -> str:
+    """Return a table of the results of a point's observables, with notes on errors that are not
+    trusted; "" without observables.
+
+    There is a row for each variable, with its dimensions, or for each species or pair of species if
+    the variable has no other dimensions.
+    """
     rows = [["observed", "value", "meaning"]]
-    for key, about in point.variables.items():
-        if "observable" not in about.attrs or f"{key}_stderr" not in point:
+    for key, variable in point.variables.items():
+        if "observable" not in variable.attrs or f"{key}_stderr" not in point:
             continue
-        if not PARTS >= {*about.dims}:
-            over = ", ".join(f"{dim} ({point.sizes[dim]})" for dim in about.dims)
-            rows.append([str(key), f"over {over}{_doubtful(point, key)}", about.attrs["long_name"]])
+        if not SPECIES_DIMENSIONS >= {*variable.dims}:
+            dimensions = ", ".join(f"{dim} ({point.sizes[dim]})" for dim in variable.dims)
+            rows.append(
+                [
+                    str(key),
+                    f"over {dimensions}{_doubtful_count(point, key)}",
+                    variable.attrs["long_name"],
+                ]
+            )
             continue
-        for at in np.ndindex(about.shape):
-            if list(at) == sorted(at):  # a pair is the same in either order
-                kinds = ", ".join(str(point.species.values[k]) for k in at)
-                one = point.isel(dict(zip(about.dims, at, strict=True)))
-                name = f"{key} [{kinds}]" if kinds else str(key)
-                rows.append([name, _estimate(one, str(key)), about.attrs["long_name"]])
-    return columns(rows) + _doubts(point) if rows[1:] else ""
+        for index in np.ndindex(variable.shape):
+            if list(index) == sorted(index):  # the order of a pair does not matter
+                species = ", ".join(str(point.species.values[k]) for k in index)
+                element = point.isel(dict(zip(variable.dims, index, strict=True)))
+                name = f"{key} [{species}]" if species else str(key)
+                rows.append([name, _estimate(element, str(key)), variable.attrs["long_name"]])
+    return columns(rows) + _doubt_notes(point) if rows[1:] else ""
 
 
 def _estimate(point: Dataset, name: str) -> str:
+    """Return the variable `name` of a point with its standard error, such as 0.3565(30), marked if
+    the error is not trusted."""
     value, stderr = float(point[name]), float(point.get(f"{name}_stderr", math.nan))
-    return f"{Estimate(value, stderr)}{MARK if point.get(f'{name}_trusted', YES) != YES else ''}"
+    return (
+        f"{Estimate(value, stderr)}{DOUBT_MARK if point.get(f'{name}_trusted', YES) != YES else ''}"
+    )
 
 
-def _doubtful(point: Dataset, name: Any) -> str:
-    """Return how many values of a variable have errors that are not trusted."""
+def _doubtful_count(point: Dataset, name: Any) -> str:
+    """Return in words the number of values of the variable `name` whose errors are not trusted; ""
+    if there are none."""
     flags = point.get(f"{name}_trusted")
     count = 0 if flags is None else int((flags != YES).sum())
-    return f", {count} of {point[name].size} {MARK}" if count else ""
+    return f", {count} of {point[name].size} {DOUBT_MARK}" if count else ""
 
 
-def _doubts(point: Dataset) -> str:
-    """Return a line on errors that are not trusted, and one for each reason, if there are any."""
+def _doubt_notes(point: Dataset) -> str:
+    """Return a line for each reason why errors of variables of a point are not trusted, below a
+    title; "" if all are trusted."""
     reasons: dict[str, list[str]] = {}
-    for name, about in point.variables.items():
+    for name, variable in point.variables.items():
         if (
-            about.attrs.get("observable")
-            and str(name).endswith(TRUSTED)
-            and "comment" in about.attrs
+            variable.attrs.get("observable")
+            and str(name).endswith(TRUSTED_SUFFIX)
+            and "comment" in variable.attrs
         ):
-            for reason in about.attrs["comment"].split("; "):
-                reasons.setdefault(reason, []).append(str(name).removesuffix(TRUSTED))
-    lines = [f"  {reason}: {_few(names)}" for reason, names in reasons.items()]
-    return "\n".join([f"\n{MARK}: the error may be too small", *lines]) if lines else ""
+            for reason in variable.attrs["comment"].split("; "):
+                reasons.setdefault(reason, []).append(str(name).removesuffix(TRUSTED_SUFFIX))
+    lines = [f"  {reason}: {_names_text(names)}" for reason, names in reasons.items()]
+    return "\n".join([f"\n{DOUBT_MARK}: the error may be too small", *lines]) if lines else ""
 
 
-def _few(names: list[str]) -> str:
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(names[:MOST_NAMES]) + more
+def _names_text(names: list[str]) -> str:
+    """Return the first MAX_NAMES_LISTED of `names` as text, and the number of further ones."""
+    remainder = (
+        f" and {len(names) - MAX_NAMES_LISTED} more" if len(names) > MAX_NAMES_LISTED else ""
+    )
+    return ", ".join(names[:MAX_NAMES_LISTED]) + remainder
 
 
-def scalars(data: Dataset) -> dict[str, Any]:
-    """Return the single numbers of a dataset by name; flags are True, False, or None: unknown."""
+def scalars(data: Dataset) -> NamedValues:
+    """Return the scalar variables of a dataset by name, as Python numbers or texts; flags are True,
+    False, or None for not known."""
     return {
-        str(name): FLAGS[int(one)] if "flag_meanings" in one.attrs else one.values.item()
-        for name, one in data.variables.items()
-        if not one.dims
+        str(name): FLAG_VALUES[int(variable)]
+        if "flag_meanings" in variable.attrs
+        else variable.values.item()
+        for name, variable in data.variables.items()
+        if not variable.dims
     }
 
 
 def task_text(data: Dataset) -> str:
-    """Return a table of the variables of a task."""
-    from roughgas import accuracy
-
-    about = data.attrs
-    chosen = json.loads(about["settings_json"])["study"]
-    head = [["task", f"{about['task']} of the study {about['study']}, scale {about['scale']}"]]
-    head += [[key, str(one)] for key, one in chosen.items() if not isinstance(one, dict | list)]
-    place = "accuracy/{study}" if about["study"] in accuracy.STUDIES else "{study}/tasks"
-    file = f"results/{about['scale']}/{place.format(**about)}/{about['task']}.nc"
-    again = f"To make it again: snakemake -j1 {file}"
-    return "\n\n".join([columns(head), variables_text(data), again])
+    """Return the summary of the dataset of a study's task as text: its settings, variables, and
+    command."""
+    attrs = data.attrs
+    study_settings = json.loads(attrs["settings_json"])["study"]
+    header = [
+        [
+            "task",
+            f"{attrs['task']} of the study {attrs['study']}, scale {attrs['scale']}",
+        ]
+    ]
+    header += [
+        [key, str(value)]
+        for key, value in study_settings.items()
+        if not isinstance(value, dict | list)
+    ]
+    study = _study_of_module(attrs["study"])
+    folder = f"{study.heading}/{attrs['study']}" if study else f"{attrs['study']}/tasks"
+    path = f"results/{attrs['scale']}/{folder}/{attrs['task']}.nc"
+    command = f"To make it again: snakemake -j1 {path}"
+    return "\n\n".join([columns(header), variables_text(data), command])
 
 
 def variables_text(data: Dataset) -> str:
-    """Return a table of the variables of a dataset."""
+    """Return a table of all variables of a dataset as text: name, dimensions with sizes, values."""
     table = [["variable", "over", "value"]]
-    for name, one in data.variables.items():
-        over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
-        table.append([str(name), over, _values(one.values)])
+    for name, variable in data.variables.items():
+        dimensions = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in variable.dims)
+        table.append([str(name), dimensions, _values_text(variable.values)])
     return columns(table)
 
 
-def _values(values: np.ndarray) -> str:
-    """Return few values as they are, many as their range."""
-    if values.size <= MOST_VALUES or values.dtype.kind not in "fiu":
-        few = values.ravel()[:MOST_VALUES]
-        return ", ".join(str(one) if isinstance(one, str) else f"{one:.5g}" for one in few)
-    there = values[np.isfinite(values)]
-    if not there.size:
+def _values_text(values: np.ndarray) -> str:
+    """Return up to MAX_VALUES_LISTED values as text, or the range and the mean of more numbers."""
+    if values.size <= MAX_VALUES_LISTED or values.dtype.kind not in "fiu":
+        listed = values.ravel()[:MAX_VALUES_LISTED]
+        return ", ".join(
+            str(value) if isinstance(value, str) else f"{value:.5g}" for value in listed
+        )
+    finite = values[np.isfinite(values)]
+    if not finite.size:
         return "nothing"
-    return f"{there.min():.5g} to {there.max():.5g}, {there.mean():.5g} on average"
+    return f"{finite.min():.5g} to {finite.max():.5g}, {finite.mean():.5g} on average"
 
 
-def task_record(data: Dataset) -> dict[str, Any]:
-    """Return the sizes and single numbers of a task."""
+def task_record(data: Dataset) -> NamedValues:
+    """Return the sizes of the dimensions (`sizes`) and the scalar variables (`variables`) of the
+    dataset of a task, by name."""
     return {"sizes": dict(data.sizes), "variables": scalars(data)}
 
 
-def studies_record(studies: Mapping[str, Dataset]) -> dict[str, Any]:
-    """Return the same of each study, by name."""
-    found = {name: {"attributes": one.attrs} | task_record(one) for name, one in studies.items()}
-    return {"studies": found}
+def studies_record(studies: Mapping[str, Dataset]) -> NamedValues:
+    """Return, under `studies`, the attributes, sizes and scalar variables of each study's results
+    (`studies`, by name of the study)."""
+    records = {
+        name: {"attributes": data.attrs} | task_record(data) for name, data in studies.items()
+    }
+    return {"studies": records}
 
 
 def studies_text(studies: Mapping[str, Dataset]) -> str:
-    """Return the tables of all studies."""
+    """Return the summaries of the results of all studies (`studies`, by name) as text, below their
+    scale."""
     scales = {data.attrs["scale"] for data in studies.values()}
-    parts = [_table_of(name)(data).strip() for name, data in studies.items()]
-    return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])
+    tables = [_table_function(name)(data).strip() for name, data in studies.items()]
+    return "\n\n".join([f"scale {', '.join(sorted(scales))}", *tables])
 
 
-def _table_of(study: str) -> Callable[[Dataset], str]:
-    """Return what shows the data of a study: of accuracy, or of a folder if that is there."""
-    from roughgas import accuracy
-    from roughgas.config.study_folders import folders
+def _table_function(study: str) -> Callable[[Dataset], str]:
+    """Return the function that makes a table, as text, of a dataset of `study`, the name of a study
+    or of a module with tasks.
 
-    if study in accuracy.STUDIES:
-        return accuracy.study(study).table
-    folder = folders(config.in_use()).get(study)
-    if folder is None or not (folder / "results.py").exists():
-        return variables_text
-    return module_of(folder, "results").table
+    It is `table` of that module, or of results.py of the study, or else `variables_text`.
+    """
+    table: Callable[[Dataset], str] = variables_text
+    folder = folders(config.active_config_path()).get(study)
+    if (study_of_module := _study_of_module(study)) is not None:
+        table = study_module(study_of_module.folder, study).table
+    elif folder is not None and (folder / "results.py").exists():
+        table = study_module(folder, "results").table
+    return table
 
 
-KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {
+def _study_of_module(module: str) -> WrittenStudy | None:
+    """Return the study whose tasks the module named `module` runs; None if no study has the
+    module."""
+    for name, folder in folders(config.active_config_path()).items():
+        if (folder / f"{module}.py").exists():
+            with suppress(InputError, OSError):  # skips a broken study
+                study = WrittenStudy(name, folder)
+                if module in study.modules:
+                    return study
+    return None
+
+
+SUMMARIES: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {
     "point": (_point_text, _point_record),
     "reduced dataset": (_reduced_text, _reduced_record),
     "task of a study": (task_text, task_record),
     "dataset of studies": (studies_text, studies_record),
 }
-"""The kinds of files: what a person reads of each, and what a script reads."""
+"""Functions that summarise each kind of file: as text, and as a record for JSON."""

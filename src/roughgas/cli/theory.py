@@ -1,23 +1,29 @@
-"""`roughgas theory`: what theory says of R, at a point or along a curve, and by which equations."""
+"""`roughgas theory`: predictions of R and of relaxation, at a point or along a curve, with the
+equations that they come from.
+
+R = E_rot/(E_rot + E_trans), from energies per degree of freedom; r is the normal restitution, beta
+the roughness, q = I/(m a^2) the moment of inertia. Rates are per collision per particle.
+"""
 
 import csv
 import sys
-from argparse import Namespace
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas import config, theory
-from roughgas.base import Interval, NeedsError, as_json, columns
-from roughgas.cli.parser import labels, number
-from roughgas.config.reading import parse_yaml, read_yaml
+from roughgas import theory
+from roughgas.base import Interval, NamedValues, NeedsError, Record, as_json, columns
+from roughgas.base.labels import grid_points
+from roughgas.base.reading import parse_yaml, read_yaml
+from roughgas.cli.values import labels, number
 from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 
 class Quantity(NamedTuple):
-    """An array over the points, what it is, and which equation it is from."""
+    """A predicted quantity: an array over the points, its meaning, and its `source`, the name of
+    its equation, as texts."""
 
     values: Any
     meaning: str
@@ -25,9 +31,12 @@ class Quantity(NamedTuple):
 
 
 class GasParameters(NamedTuple):
-    """Points (r, beta), arrays of equal shape, and what they share; no friction: `mu` is None.
+    """Points (r, beta), arrays of equal shape, and the parameters that they share.
 
-    The species of a mixture are as in config.yaml; its `inertia` is that of species without one.
+    `inertia` is q = I/(m a^2), `spin_share` the share of the drive's power that goes into rotation.
+    `mu`, Coulomb's coefficient, is None without friction. The species of a mixture are as in
+    config.yaml; its `inertia` is the default of species. `packing` is the share of the box that
+    particles fill.
     """
 
     r: Any
@@ -37,92 +46,116 @@ class GasParameters(NamedTuple):
     spin_share: float
     mu: float | None
     species: Sequence[Mapping[str, Any]] | None = None
-    packing: float = 0.0  # matters for mixtures alone
+    packing: float = 0.0  # matters only for mixtures
 
 
-TOLERANCE = 0.01  # of R, within which it counts as settled
+TOLERANCE = 0.01  # relative deviation of R below which it counts as settled
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 SOURCE = "rate equations of mixtures"
 NOTES = f"Rates are per collision per particle. Equations: docs/physics.md, and\n{PAPER}."
 
 
 Tables = Sequence[tuple[GasParameters, Mapping[str, Quantity]]]
-"""All quantities of each gas; the gases have the same points."""
+"""Gases with the same points, each with its quantities by name."""
 
 
-def print_theory(options: Namespace) -> None:
-    """Print theory's numbers."""
-    tables = [(gas, quantities(gas)) for gas in _gases(options)]
-    if options.csv:
+def print_tables(gases: Iterable[GasParameters], json: bool, csv: bool) -> None:
+    """Print the quantities of gases with the same points: as text, as JSON if `json`, as CSV if
+    `csv`."""
+    tables = [(gas, quantities(gas)) for gas in gases]
+    if csv:
         _write_csv(tables)
-    elif options.json:
-        print(as_json(_record(tables)))
+    elif json:
+        print(as_json(_json_record(tables)))
     else:
-        print(f"{_point(tables) if len(tables[0][0].r) == 1 else _curve(tables)}\n{NOTES}")
+        print(
+            f"{_point_text(tables) if len(tables[0][0].r) == 1 else _curve_text(tables)}\n{NOTES}"
+        )
 
 
-def _gases(options: Namespace) -> list[GasParameters]:
-    """Return the gas, or those of both dimensions, at all (r, beta) of the axes.
+def gases(
+    r: Sequence[str],
+    beta: Sequence[str],
+    dimension: str | None,
+    inertia: str | None,
+    spin_share: str,
+    mu: str | None,
+    species: str | None,
+    packing: str,
+) -> list[GasParameters]:
+    """Return the gases at all (r, beta) from the texts of the command's options: of disks and of
+    spheres if no dimension is given.
 
-    Raises InputError for illegal values.
+    Without `inertia` particles are uniform; without `mu` there is no friction. `species` is YAML or
+    the path of a YAML file, None for identical particles. Raises InputError for illegal values.
     """
-    given = labels("--r", options.r), labels("--beta", options.beta)
-    at = config.places(*given, ["1"], prefix="--")
-    r, beta = np.array([(one.r, one.beta) for one in at]).T
-    share = SHARE.check("spin share of the drive", number("--spin-share", options.spin_share))
-    mu = q = None
-    if options.mu is not None:
-        mu = FRICTION.check("friction mu", number("--mu", options.mu))
-    if options.inertia is not None:
-        q = float(check("inertia q", number("--inertia", options.inertia)))
-    packing = number("--packing", options.packing, Interval("[0, 1)"))
-    if packing and options.species is None:
+    points = grid_points(labels("--r", r), labels("--beta", beta), ["1"], prefix="--")
+    restitution, roughness = np.array([(point.r, point.beta) for point in points]).T
+    share = SHARE.check("spin share of the drive", number("--spin-share", spin_share))
+    friction = q = None
+    if mu is not None:
+        friction = FRICTION.check("friction mu", number("--mu", mu))
+    if inertia is not None:
+        q = float(check("inertia q", number("--inertia", inertia)))
+    packing_fraction = number("--packing", packing, Interval("[0, 1)"))
+    if packing_fraction and species is None:
         raise NeedsError("--packing", "--species: one species has the same R at any packing")
-    mixed = None if options.species is None else species_from(options.species), packing
-    dimensions = [int(options.dimension)] if options.dimension else [2, 3]
-    inertia = {D: q or moment_of_inertia(D) for D in dimensions}
-    return [GasParameters(r, beta, D, inertia[D], share, mu, *mixed) for D in dimensions]
+    mixture = None if species is None else species_of_text(species), packing_fraction
+    dimensions = [int(dimension)] if dimension else [2, 3]
+    return [
+        GasParameters(
+            restitution, roughness, D, q or moment_of_inertia(D), share, friction, *mixture
+        )
+        for D in dimensions
+    ]
 
 
 def quantities(gas: GasParameters) -> dict[str, Quantity]:
-    """Return all that theory says of a gas, by name."""
+    """Return the quantities that theory predicts of a gas, by name, such as R_driven."""
     if gas.species is not None:
         return quantities_of_mixture(gas)
-    about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
+    settings = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
     if gas.mu is not None:
-        about["mu"] = gas.mu
+        settings["mu"] = gas.mu
     drive = "through translation" if gas.spin_share == 0.0 else f"spin share {gas.spin_share:g}"
-    found = {}
-    for name, kind, way in (("driven", "lun", f"driven, {drive}"), ("cooling", "K", "cooling")):
-        obeying = about | {"theory": kind}
-        R = predicted_ratio(obeying, gas.r, gas.beta)
-        found[f"R_{name}"] = Quantity(R, f"R, {way}", equation_of(obeying).name)
+    results = {}
+    for name, equation, drive_text in (
+        ("driven", "lun", f"driven, {drive}"),
+        ("cooling", "K", "cooling"),
+    ):
+        theory_settings = settings | {"theory": equation}
+        R = predicted_ratio(theory_settings, gas.r, gas.beta)
+        results[f"R_{name}"] = Quantity(R, f"R, {drive_text}", equation_of(theory_settings).name)
         if gas.mu is None:
-            share = gas.spin_share if kind == "lun" else None
+            share = gas.spin_share if equation == "lun" else None
             R = theory.sonine_state(gas.r, gas.beta, gas.dimension, gas.inertia, share).R
-            kicked = " by white noise" if kind == "lun" else ""
-            meaning = f"the same{kicked}, not Maxwellian"
-            found[f"R_{name}_sonine"] = Quantity(R, meaning, "Sonine approximation")
-    return found | (_relaxation(gas) if gas.mu is None else _friction(gas))
+            drive_note = " by white noise" if equation == "lun" else ""
+            meaning = f"the same{drive_note}, not Maxwellian"
+            results[f"R_{name}_sonine"] = Quantity(R, meaning, "Sonine approximation")
+    return results | (_relaxation_quantities(gas) if gas.mu is None else _friction_quantities(gas))
 
 
-def _relaxation(gas: GasParameters) -> dict[str, Quantity]:
-    """Return how fast R settles and energy decays."""
+def _relaxation_quantities(gas: GasParameters) -> dict[str, Quantity]:
+    """Return, by name, the relaxation rate of R, the collisions per particle until it settles, and
+    the decay rate of energy of a gas without friction."""
     point, source = (gas.r, gas.beta), "rate equations"
     spins = {"dimension": gas.dimension, "inertia": gas.inertia}
-    until = f"collisions per particle to reach R within {TOLERANCE:.0%}"
-    found = {}
+    meaning = f"collisions per particle to reach R within {TOLERANCE:.0%}"
+    results = {}
     for name, share in (("driven", gas.spin_share), ("cooling", None)):
         rate = theory.relaxation_rate(*point, **spins, spin_share=share)
-        needed = theory.collisions_to_relax(*point, TOLERANCE, **spins, spin_share=share)
-        found[f"rate_{name}"] = Quantity(rate, f"rate at which R settles, {name}", source)
-        found[f"settled_{name}"] = Quantity(needed, f"{until}, {name}", source)
+        collisions = theory.collisions_to_relax(*point, TOLERANCE, **spins, spin_share=share)
+        results[f"rate_{name}"] = Quantity(rate, f"rate at which R settles, {name}", source)
+        results[f"settled_{name}"] = Quantity(collisions, f"{meaning}, {name}", source)
     decay = theory.decay_rate(*point, **spins)
-    return found | {"decay": Quantity(decay, "rate at which energy decays, cooling", "Haff's law")}
+    return results | {
+        "decay": Quantity(decay, "rate at which energy decays, cooling", "Haff's law")
+    }
 
 
-def _friction(gas: GasParameters) -> dict[str, Quantity]:
-    """Return how fast R settles and how often contacts slide, if they can."""
+def _friction_quantities(gas: GasParameters) -> dict[str, Quantity]:
+    """Return, by name, the relaxation rate of R, the share of sliding contacts, and the critical
+    friction of a gas with Coulomb friction."""
     spins, source = (gas.mu, gas.dimension, gas.inertia), "rate equations with Coulomb friction"
     rate = theory.friction_relaxation_rate(gas.r, gas.beta, *spins)
     R = theory.friction_ratio(gas.r, gas.beta, *spins, gas.spin_share)
@@ -135,110 +168,135 @@ def _friction(gas: GasParameters) -> dict[str, Quantity]:
     }
 
 
-def _point(tables: Tables) -> str:
-    """Return a row for each quantity, a column for each dimension."""
+def _point_text(tables: Tables) -> str:
+    """Return a table of one point as text: a row for each quantity, a column for each gas of
+    `tables`."""
     gas, first = tables[0]
     friction = "" if gas.mu is None else f", mu = {gas.mu:g}"
-    rows = [[f"r = {gas.r[0]:g}, beta = {gas.beta[0]:g}{friction}", *_titles(tables), ""]]
+    rows = [[f"r = {gas.r[0]:g}, beta = {gas.beta[0]:g}{friction}", *_gas_titles(tables), ""]]
     for name, quantity in first.items():
-        numbers = [f"{found[name].values.flat[0]:.5g}" for _, found in tables]
-        numbers = ["none" if one == "nan" else one for one in numbers]
-        rows.append([quantity.meaning, *numbers, _sources(tables, name)])
+        numbers = [f"{results[name].values.flat[0]:.5g}" for _, results in tables]
+        numbers = ["none" if text == "nan" else text for text in numbers]
+        rows.append([quantity.meaning, *numbers, _source_text(tables, name)])
     return f"{columns(rows)}\n"
 
 
-def _curve(tables: Tables) -> str:
-    """Return a row for each point; below, what the columns are."""
+def _curve_text(tables: Tables) -> str:
+    """Return a table as text, a row for each point of each gas of `tables`; below, the meaning and
+    equation of each column."""
     first = tables[0][1]
     rows = [["D", "r", "beta", *first]]
     rows += [[f"{value:.5g}" for value in row.values()] for row in _rows(tables)]
-    about = [[name, one.meaning, _sources(tables, name)] for name, one in first.items()]
-    inertia = " and ".join(_titles(tables))
-    return f"{columns(rows, numbers=True)}\n\n{columns(about)}\n\n{inertia}."
+    meanings = [
+        [name, quantity.meaning, _source_text(tables, name)] for name, quantity in first.items()
+    ]
+    inertia = " and ".join(_gas_titles(tables))
+    return f"{columns(rows, numbers=True)}\n\n{columns(meanings)}\n\n{inertia}."
 
 
-def _record(tables: Tables) -> dict[str, Any]:
-    """Return a record for each point, and what its numbers are."""
+def _json_record(tables: Tables) -> NamedValues:
+    """Return the points of all gases of `tables` for JSON, with their parameters and the meanings
+    and equations of quantities."""
     gas, first = tables[0]
-    about = {}
-    for name, one in first.items():
-        sources = {str(gas.dimension): found[name].source for gas, found in tables}
-        about[name] = {"meaning": one.meaning, "source": sources}
+    descriptions = {}
+    for name, quantity in first.items():
+        sources = {str(gas.dimension): results[name].source for gas, results in tables}
+        descriptions[name] = {"meaning": quantity.meaning, "source": sources}
     return {
         "inertia": {str(gas.dimension): gas.inertia for gas, _ in tables},
         "spin_share": gas.spin_share,
         "mu": gas.mu,
         **({} if gas.species is None else {"species": gas.species, "packing": gas.packing}),
         "reference": PAPER,
-        "quantities": about,
+        "quantities": descriptions,
         "points": list(_rows(tables)),
     }
 
 
 def _write_csv(tables: Tables) -> None:
-    """Print a row for each point; the last column says which equations its numbers are from."""
+    """Print as CSV a row for each point of each gas of `tables`; the last column names the equation
+    of each quantity."""
     table = csv.writer(sys.stdout, lineterminator="\n")
     table.writerow(["dimension", "r", "beta", *tables[0][1], "sources"])
-    for gas, found in tables:
-        sources = "; ".join(f"{name}: {one.source}" for name, one in found.items())
-        for row in _rows([(gas, found)]):
+    for gas, results in tables:
+        sources = "; ".join(f"{name}: {quantity.source}" for name, quantity in results.items())
+        for row in _rows([(gas, results)]):
             table.writerow([*(format(value, ".10g") for value in row.values()), sources])
 
 
-def _titles(tables: Tables) -> list[str]:
+def _gas_titles(tables: Tables) -> list[str]:
+    """Return the title of each gas of `tables`: dimension and moment of inertia."""
     return [f"{gas.dimension}D, q = {gas.inertia:g}" for gas, _ in tables]
 
 
-def _sources(tables: Tables, name: str) -> str:
-    return "; ".join(dict.fromkeys(found[name].source for _, found in tables))
+def _source_text(tables: Tables, name: str) -> str:
+    """Return the equations of the quantity `name` for all gases of `tables`, without repetition."""
+    return "; ".join(dict.fromkeys(results[name].source for _, results in tables))
 
 
 def _rows(tables: Tables) -> Iterator[dict[str, float]]:
-    for gas, found in tables:
-        values = {"r": gas.r, "beta": gas.beta} | {name: one.values for name, one in found.items()}
+    """Yield, by name, the dimension, r, beta and all quantities of each point of each gas of
+    `tables`."""
+    for gas, results in tables:
+        values = {"r": gas.r, "beta": gas.beta} | {
+            name: quantity.values for name, quantity in results.items()
+        }
         arrays = np.broadcast_arrays(*values.values())
         for row in zip(*arrays, strict=True):
             yield {"dimension": gas.dimension} | dict(zip(values, row, strict=True))
 
 
-def species_from(text: str) -> Sequence[Mapping[str, Any]]:
-    """Return species from a YAML file, or from YAML itself; a file may have them as `species`.
+def species_of_text(text: str) -> Sequence[Record]:
+    """Return the species of a mixture from YAML, or from the path of a YAML file, which may list
+    them under `species`.
 
-    Raises InputError for what is neither, and as `theory.mixture`; OSError for a missing file.
+    A text that begins with a bracket is YAML. Raises InputError for another text, and as
+    `theory.mixture`; OSError for a missing file.
     """
-    found = parse_yaml(text, "--species") if text.lstrip().startswith("[") else read_yaml(text)
-    if isinstance(found, Mapping):
-        found = found.get("species", found)
-    theory.mixture(found, 1.0, 1.0)
-    return found
+    content = parse_yaml(text, "--species") if text.lstrip().startswith("[") else read_yaml(text)
+    if isinstance(content, Mapping):
+        content = content.get("species", content)
+    theory.mixture(content, 1.0, 1.0)
+    species: Sequence[Record] = content
+    return species
 
 
 def quantities_of_mixture(gas: GasParameters) -> dict[str, Quantity]:
-    """Return all that theory says of a mixture, by name."""
-    points = [_at_a_point(gas, *place) for place in zip(gas.r, gas.beta, strict=True)]
+    """Return the quantities that theory predicts of a mixture, by name, such as R_driven for all
+    particles and R_driven_NAME for a species."""
+    points = [
+        _quantities_at_point(gas, *coordinates) for coordinates in zip(gas.r, gas.beta, strict=True)
+    ]
     return {
-        name: Quantity(np.array([point[name].values for point in points]), *about)
-        for name, (_, *about) in points[0].items()
+        name: Quantity(np.array([point[name].values for point in points]), *description)
+        for name, (_, *description) in points[0].items()
     }
 
 
-def _at_a_point(gas: GasParameters, r: float, beta: float) -> dict[str, Quantity]:
+def _quantities_at_point(gas: GasParameters, r: float, beta: float) -> dict[str, Quantity]:
+    """Return the quantities of a mixture at a single (r, beta), by name: R and the translational
+    temperature of each species, R of all, and the rates of cooling.
+
+    A temperature is in units of its mean over all particles.
+    """
     mu = np.inf if gas.mu is None else gas.mu
-    mixed = theory.mixture(gas.species, r, beta, gas.dimension, gas.inertia, mu)
-    kicks, share = theory.kick_power(mixed), gas.spin_share
+    mixture = theory.mixture(gas.species, r, beta, gas.dimension, gas.inertia, mu)
+    kick_powers, share = theory.kick_power(mixture), gas.spin_share
     states = {
-        "driven": theory.mixture_driven(mixed, (1 - share) * kicks, gas.packing, share),
-        "cooling": theory.mixture_cooling(mixed, gas.packing),
+        "driven": theory.mixture_driven(mixture, (1 - share) * kick_powers, gas.packing, share),
+        "cooling": theory.mixture_cooling(mixture, gas.packing),
     }
-    found = {}
-    for way, state in states.items():
-        found[f"R_{way}"] = Quantity(state.overall_ratio(mixed), f"R of all, {way}", SOURCE)
-        for k, one in enumerate(gas.species or ()):
-            name = str(one.get("name", k + 1))
-            found[f"R_{way}_{name}"] = Quantity(state.R[k], f"R of {name}, {way}", SOURCE)
-            about = f"T_tr of {name} over its mean, {way}"
-            found[f"T_{way}_{name}"] = Quantity(state.T_tr[k], about, SOURCE)
+    results = {}
+    for drive, state in states.items():
+        results[f"R_{drive}"] = Quantity(state.overall_ratio(mixture), f"R of all, {drive}", SOURCE)
+        for k, settings in enumerate(gas.species or ()):
+            name = str(settings.get("name", k + 1))
+            results[f"R_{drive}_{name}"] = Quantity(state.R[k], f"R of {name}, {drive}", SOURCE)
+            meaning = f"T_tr of {name} over its mean, {drive}"
+            results[f"T_{drive}_{name}"] = Quantity(state.T_tr[k], meaning, SOURCE)
     rates = theory.mixture_relaxation_rate, theory.mixture_decay_rate
-    settles, decays = (rate(mixed, gas.packing) for rate in rates)
-    found["rate_cooling"] = Quantity(settles, "rate at which ratios settle, cooling", SOURCE)
-    return found | {"decay": Quantity(decays, "rate at which energy decays, cooling", SOURCE)}
+    relaxation_rate, decay_rate = (rate(mixture, gas.packing) for rate in rates)
+    results["rate_cooling"] = Quantity(
+        relaxation_rate, "rate at which ratios settle, cooling", SOURCE
+    )
+    return results | {"decay": Quantity(decay_rate, "rate at which energy decays, cooling", SOURCE)}

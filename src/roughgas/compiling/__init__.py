@@ -1,1 +1,1 @@
-"""How plain Python becomes a kernel's machine code, and where that is kept."""
+"""Compiling a kernel, which is plain Python, to machine code, and caching it on the disk."""

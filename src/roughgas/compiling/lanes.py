@@ -1,33 +1,32 @@
-"""Several particles at once, one to each lane of a vector register: what simd.py makes of them in
-machine code, in plain Python.
+"""Vector registers, with one particle to each lane, in plain Python; simd.py has the machine code.
 
 Lanes are values of compiled code that never leave the registers, and arrays where the kernel runs
 as plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with
-one operand a scalar if need be. A machine with narrower registers takes several for one.
+one operand a scalar if need be. A machine with narrower registers uses several of them.
 """
 
 import numpy as np
 
-from roughgas.compiling.jit import Primitive, jit, of_types
+from roughgas.compiling.jit import Primitive, jit, static
 
 BYTES = 64  # of a register, in plain Python
 
 
-@of_types
+@static
 def is_lanes(x):
-    """Return whether x is lanes; in place of a value it may be a type of numba's."""
+    """Return whether x, a value or its type in numba, is lanes."""
     return (hasattr(x, "count") and hasattr(x, "kind")) or isinstance(x, np.ndarray)
 
 
-@of_types
+@static
 def is_single(x):
-    """Return whether x, or each lane of it, is in single precision; x may be a type, too."""
+    """Return whether x, a value or its type in numba, is in single precision, or lanes of that."""
     return str(getattr(x, "kind", getattr(x, "dtype", x))) == "float32"
 
 
-@of_types
+@static
 def lanes_of(array):
-    """Return how many of an array's numbers a register has; in place of it may be its type."""
+    """Return the number of lanes of a register for numbers of an array, or of an array's type."""
     if isinstance(array, np.ndarray):
         return BYTES // array.itemsize
     from roughgas.compiling import simd
@@ -43,39 +42,39 @@ def load(array, row, first, count):
 
 @Primitive
 def store(array, row, first, lanes):
-    """Put lanes where `load` has them from."""
+    """Assign lanes to array[row, first:first + count]."""
     array[row, first : first + len(lanes)] = lanes
 
 
 @Primitive
-def numbers_in(places, first, count):
-    """Return places[first:first + count], which are 32-bit integers, each read by itself: what has
-    just been written one by one, a read of all would have to wait for."""
-    return places[first : first + count].copy()
+def load_scalars(array, first, count):
+    """Load int32 elements array[first:first + count] one by one, as lanes: a vector load right
+    after scalar stores would stall."""
+    return array[first : first + count].copy()
 
 
 @Primitive
-def gather(array, column, numbers):
-    """Return array[number, column], or array[number], for each number; singles are widened."""
-    found = array[numbers] if array.ndim == 1 else array[numbers, column]
-    return found.astype(float) if is_single(found) else found
+def gather(array, column, rows):
+    """Return array[row, column], or array[row], for each lane; single precision is widened."""
+    values = array[rows] if array.ndim == 1 else array[rows, column]
+    return values.astype(float) if is_single(values) else values
 
 
 @Primitive
-def order(count):
-    """Return 0.0, 1.0, 2.0, ..."""
+def iota(count):
+    """Return the lanes 0.0, 1.0, 2.0, ..."""
     return np.arange(float(count))
 
 
 @Primitive
 def bits(lanes):
-    """Return lanes of booleans as an integer, the first lane its lowest bit."""
-    return np.uint64(sum(1 << k for k, holds in enumerate(lanes) if holds))
+    """Return lanes of booleans as the bits of an integer, the first lane its lowest bit."""
+    return np.uint64(sum(1 << k for k, is_set in enumerate(lanes) if is_set))
 
 
 @Primitive
-def least(lanes):
-    """Return the least of the lanes, whose number is a power of two."""
+def horizontal_min(lanes):
+    """Return the minimum over the lanes; their number is a power of two."""
     return lanes.min()
 
 
@@ -87,12 +86,12 @@ def trailing_zeros(word):
 
 @Primitive
 def prefetch(array, row):
-    """Have array[row] on its way to the cache."""
+    """Ask the processor to bring array[row] into its cache."""
 
 
 @Primitive
-def index(number):
-    """Return a number, promised not to count from the end of an array."""
+def assume_nonnegative(number):
+    """Return an integer that the compiler may take for >= 0: as an index it needs no wraparound."""
     return number
 
 
@@ -103,41 +102,40 @@ def multiply_add(a, b, c):
 
 
 @Primitive
-def select(condition, one, other):
-    """Return `one` in the lanes where the condition holds, `other` elsewhere."""
-    return np.where(condition, one, other)
+def select(condition, if_true, if_false):
+    """Return `if_true` in the lanes where the condition holds, `if_false` in the others."""
+    return np.where(condition, if_true, if_false)
 
 
 @Primitive
-def root(x):
+def sqrt(x):
     """Return the square root of a number, or of lanes."""
     return np.sqrt(x)
 
 
 @Primitive
-def append(places, number, lanes, first):
-    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
-    how many places are taken then."""
-    (found,) = np.nonzero(lanes)
-    places[number : number + len(found)] = first + found
-    return number + len(found)
+def append(array, length, lanes, first):
+    """Append first + k for every lane k that is set to array[:length]; return the new length."""
+    (positions,) = np.nonzero(lanes)
+    array[length : length + len(positions)] = first + positions
+    return length + len(positions)
 
 
 @jit
-def choose(condition, one, other):
-    """Return `one` where the condition holds, else `other`; lane by lane, where it is lanes."""
+def choose(condition, if_true, if_false):
+    """Return `if_true` where the condition holds, else `if_false`; lane by lane, if it is lanes."""
     if is_lanes(condition):
-        return select(condition, one, other)
-    return one if condition else other
+        return select(condition, if_true, if_false)
+    return if_true if condition else if_false
 
 
 @jit
-def larger(one, other):
-    """Return the larger of two numbers, lane by lane if need be; the first if one is NaN."""
-    return choose(other > one, other, one)
+def larger(a, b):
+    """Return the larger of two numbers, or of each lane; `a` if either is NaN."""
+    return choose(b > a, b, a)
 
 
 @jit
-def smaller(one, other):
-    """Return the smaller of two numbers, lane by lane if need be; the first if one is NaN."""
-    return choose(other < one, other, one)
+def smaller(a, b):
+    """Return the smaller of two numbers, or of each lane; `a` if either is NaN."""
+    return choose(b < a, b, a)

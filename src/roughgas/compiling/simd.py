@@ -1,9 +1,8 @@
-"""Vector registers as numba's values, and what is done to them: lanes.py has all of it in plain
-Python. Imported when compiled code is first called.
+"""Vector registers as values of numba's, and their operations, which lanes.py has in plain Python.
 
-A Lanes holds `count` numbers of one kind, one to each lane: a value of one of LLVM's vector types,
-which LLVM splits where the machine's registers are narrower. Operators work on floats, lane by
-lane, with one operand a scalar if need be; comparisons give lanes of booleans.
+Imported when compiled code is first called. A Lanes holds `count` numbers of one type, one to each
+lane, as a vector of LLVM, which splits it if the machine's registers are narrower. Operators work
+on floats, lane by lane, with one operand a scalar if need be; comparisons give lanes of booleans.
 """
 
 import inspect
@@ -11,19 +10,29 @@ import itertools
 import operator
 from typing import Any, NamedTuple
 
+import llvmlite.binding
+import numba
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
-from numba.core.registry import cpu_target
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
 BIT, NUMBER, WORD = ir.IntType(1), ir.IntType(32), ir.IntType(64)
-# of a register: of AVX-512, or else of AVX
-BYTES = 64 if "+avx512f" in cpu_target.target_context.codegen().magic_tuple()[2] else 32
+
+
+def processor_features():
+    """Return the features that numba compiles for, as LLVM lists them: "+avx2,-avx512f,..."."""
+    chosen = numba.config.CPU_FEATURES  # NUMBA_CPU_FEATURES
+    if chosen is not None:
+        return chosen
+    return llvmlite.binding.get_host_cpu_features().flatten() if numba.config.ENABLE_AVX else ""
+
+
+BYTES = 64 if "+avx512f" in processor_features() else 32
+"""Size of a register: of AVX-512, or else of AVX."""
 
 
 class Lanes(types.Type):
-    """The type of `count` values of type `kind`."""
+    """The type of `count` values of a numba type, `kind`."""
 
     def __init__(self, kind, count):
         self.kind, self.count = kind, count
@@ -32,27 +41,45 @@ class Lanes(types.Type):
 
 @register_model(Lanes)
 def _model(manager, lanes):
-    one = manager.lookup(lanes.kind).get_value_type()
-    return models.PrimitiveModel(manager, lanes, ir.VectorType(one, lanes.count))
+    """Return numba's data model of the type `lanes`, a vector register of LLVM."""
+    element = manager.lookup(lanes.kind).get_value_type()
+    return models.PrimitiveModel(manager, lanes, ir.VectorType(element, lanes.count))
 
 
 # ------------------------------------------------------------------ operations
 
 
-class Site(NamedTuple):
-    """Where an operation becomes instructions."""
+class Lowering(NamedTuple):
+    """The context for writing an operation as instructions of LLVM."""
 
     context: Any
     builder: ir.IRBuilder
-    kinds: tuple  # of the arguments, numba's types
-    result: types.Type
+    argument_types: tuple
+    result_type: types.Type
 
-    def pointer(self, value, indices, vector=None):
-        """Return where an item of the first argument is, or where a vector of items begins."""
-        array = self.kinds[0]
-        made = self.context.make_array(array)(self.context, self.builder, value)
-        place = cgutils.get_item_pointer(self.context, self.builder, array, made, indices)
-        return place if vector is None else self.builder.bitcast(place, vector.as_pointer())
+    def pointer(self, array, indices, vector_type=None):
+        """Return the address of an item of the first argument, an array, or of a vector of items
+        that begins there."""
+        array_type, builder = self.argument_types[0], self.builder
+        model = self.context.data_model_manager.lookup(array_type)
+        data = model.get(builder, array, "data")
+        is_contiguous = array_type.layout == "C"
+        sizes = model.get(builder, array, "shape" if is_contiguous else "strides")
+        sizes = [builder.extract_value(sizes, axis) for axis in range(array_type.ndim)]
+        offset = WORD(0)
+        for axis, index in enumerate(indices):
+            step = WORD(1) if is_contiguous else sizes[axis]
+            for size in sizes[axis + 1 :] if is_contiguous else ():
+                step = builder.mul(step, size)
+            offset = builder.add(offset, builder.mul(index, step))
+        if is_contiguous:
+            address = builder.gep(data, [offset])
+        else:
+            first = builder.bitcast(data, ir.IntType(8).as_pointer())
+            address = builder.bitcast(builder.gep(first, [offset]), data.type)
+        return (
+            address if vector_type is None else builder.bitcast(address, vector_type.as_pointer())
+        )
 
     def joined(self, values):
         """Return numbers as lanes."""
@@ -61,40 +88,46 @@ class Site(NamedTuple):
             vector = self.builder.insert_element(vector, value, NUMBER(k))
         return vector
 
-    def call(self, name, result, *values, **more):
-        """Return what one of LLVM's functions makes of values, named by the type of the first."""
-        kind = values[0].type
-        one, count = (kind.element, f"v{kind.count}") if hasattr(kind, "count") else (kind, "")
-        name = f"{name}.{count}{one.intrinsic_name}"
-        kind = ir.FunctionType(result, [value.type for value in values])
-        function = cgutils.get_or_insert_function(self.builder.module, kind, name)
-        return self.builder.call(function, values, **more)
+    def call(self, name, result_type, *values, **options):
+        """Return the result of LLVM's intrinsic `name`, of the variant for the first value."""
+        first = values[0].type
+        element, count = (
+            (first.element, f"v{first.count}") if hasattr(first, "count") else (first, "")
+        )
+        name = f"{name}.{count}{element.intrinsic_name}"
+        function = self.builder.module.globals.get(name)
+        if function is None:
+            function_type = ir.FunctionType(result_type, [value.type for value in values])
+            function = ir.Function(self.builder.module, function_type, name)
+        return self.builder.call(function, values, **options)
 
-    def spread(self, value, kind):
+    def spread(self, value, argument_type):
         """Return a number in every lane where an argument is lanes; lanes as they are."""
-        if isinstance(kind, Lanes):
+        if isinstance(argument_type, Lanes):
             return value
-        whole = _lane_by_lane(*self.kinds)
-        value = self.context.cast(self.builder, value, kind, getattr(whole, "kind", whole))
-        return self.joined([value] * whole.count) if isinstance(whole, Lanes) else value
+        widest = _lane_by_lane(*self.argument_types)
+        number_type = getattr(widest, "kind", widest)
+        value = self.context.cast(self.builder, value, argument_type, number_type)
+        return self.joined([value] * widest.count) if isinstance(widest, Lanes) else value
 
 
-def operation(result):
-    """Decorate generate(site, *values) -> LLVM's value: an operation of compiled code.
+def operation(result_type):
+    """Decorate generate(lowering, *values) -> LLVM's value: an operation of compiled code.
 
-    result: of the arguments' types, literal ones where a number is known -> the type returned.
+    result_type: from the types of the arguments, literal ones where a number is a constant, to that
+    of the result.
     """
 
     def decorate(generate):
-        def define(context, *kinds):
-            returned = result(*kinds)
-            passed = [types.intp if type(one) is types.Integer else one for one in kinds]
+        def define(context, *argument_types):
+            returned = result_type(*argument_types)
+            passed = [types.intp if type(x) is types.Integer else x for x in argument_types]
 
             def lower(context, builder, signature, values):
-                site = Site(context, builder, signature.args, returned)
-                if result is _lane_by_lane:
-                    values = map(site.spread, values, site.kinds)
-                return generate(site, *values)
+                lowering = Lowering(context, builder, signature.args, returned)
+                if result_type is _lane_by_lane:
+                    values = map(lowering.spread, values, lowering.argument_types)
+                return generate(lowering, *values)
 
             return returned(*passed), lower
 
@@ -104,82 +137,86 @@ def operation(result):
     return decorate
 
 
-def define_operator(function, result, generate):
-    """Have numba compile one of Python's operators for lanes.
+def define_operator(function, result_type, generate):
+    """Have numba compile an operator of Python's for lanes.
 
-    result, generate: as of an operation.
+    result_type, generate: as of an operation.
     """
 
-    def type_of(*kinds):
-        return result(*kinds) if any(isinstance(kind, Lanes) for kind in kinds) else None
+    def type_of(*operand_types):
+        has_lanes = any(isinstance(x, Lanes) for x in operand_types)
+        return result_type(*operand_types) if has_lanes else None
 
     def lower(context, builder, signature, values):
-        site = Site(context, builder, signature.args, signature.return_type)
-        return generate(site, *map(site.spread, values, site.kinds))
+        lowering = Lowering(context, builder, signature.args, signature.return_type)
+        return generate(lowering, *map(lowering.spread, values, lowering.argument_types))
 
     arity = len(inspect.signature(function).parameters)
     type_of_operands = {1: lambda x: type_of(x), 2: lambda x, y: type_of(x, y)}[arity]
     type_callable(function)(lambda context: type_of_operands)
-    for kinds in itertools.product((Lanes, types.Any), repeat=arity):
-        if Lanes in kinds:
-            lower_builtin(function, *kinds)(lower)
+    for operand_types in itertools.product((Lanes, types.Any), repeat=arity):
+        if Lanes in operand_types:
+            lower_builtin(function, *operand_types)(lower)
 
 
-def _lane_by_lane(*kinds):
-    """Return the type of what is done lane by lane, to numbers if there are no lanes."""
-    lanes = [one for one in kinds if isinstance(one, Lanes)]
-    return lanes[-1] if lanes else max(kinds, key=lambda kind: kind.bitwidth)
+def _lane_by_lane(*argument_types):
+    """Return the result type of an operation that is carried out lane by lane: the widest number
+    where no argument is lanes."""
+    lanes = [x for x in argument_types if isinstance(x, Lanes)]
+    return lanes[-1] if lanes else max(argument_types, key=lambda x: x.bitwidth)
 
 
-def _truth(*kinds):
-    return Lanes(types.boolean, _lane_by_lane(*kinds).count)
+def _truth(*argument_types):
+    return Lanes(types.boolean, _lane_by_lane(*argument_types).count)
 
 
-def _numbers(values, kind=NUMBER):
-    return ir.VectorType(kind, len(values))(list(values))
+def _constants(values, number_type=NUMBER):
+    return ir.VectorType(number_type, len(values))(list(values))
 
 
 # ------------------------------------------------------------------ lane by lane
 
 ARITHMETIC = {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv", "neg": "fneg"}
 LOGIC = {"and_": "and_", "or_": "or_"}
-COMPARED = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}
+COMPARISONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}
 
 
 def _instruction(name, *sign):
-    return lambda site, *values: getattr(site.builder, name)(*sign, *values)
+    return lambda lowering, *values: getattr(lowering.builder, name)(*sign, *values)
 
 
-for _name, _of_llvm in (ARITHMETIC | LOGIC).items():
-    define_operator(getattr(operator, _name), _lane_by_lane, _instruction(_of_llvm))
-for _name, _sign in COMPARED.items():
+for _name, _llvm_name in (ARITHMETIC | LOGIC).items():
+    define_operator(getattr(operator, _name), _lane_by_lane, _instruction(_llvm_name))
+for _name, _sign in COMPARISONS.items():
     define_operator(getattr(operator, _name), _truth, _instruction("fcmp_ordered", _sign))
-define_operator(abs, _lane_by_lane, lambda site, x: site.call("llvm.fabs", x.type, x))
+define_operator(abs, _lane_by_lane, lambda lowering, x: lowering.call("llvm.fabs", x.type, x))
 
 lane_by_lane = operation(_lane_by_lane)
-root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
-select = lane_by_lane(lambda site, condition, a, b: site.builder.select(condition, a, b))
+sqrt = lane_by_lane(lambda lowering, x: lowering.call("llvm.sqrt", x.type, x))
+select = lane_by_lane(lambda lowering, condition, a, b: lowering.builder.select(condition, a, b))
 
 
 @lane_by_lane
-def multiply_add(site, a, b, c):
+def multiply_add(lowering, a, b, c):
     if getattr(a.type, "element", a.type) == ir.FloatType():
-        return site.call("llvm.fmuladd", a.type, a, b, c)
-    return site.builder.fadd(site.builder.fmul(a, b), c)
+        return lowering.call("llvm.fmuladd", a.type, a, b, c)
+    return lowering.builder.fadd(lowering.builder.fmul(a, b), c)
 
 
 # ------------------------------------------------------------------ memory
 
 
 @operation(lambda array, row, first, count: Lanes(array.dtype, count.literal_value))
-def load(site, array, row, first, count):
-    pointer = site.pointer(array, [row, first], site.context.get_value_type(site.result))
-    return site.builder.load(pointer, align=site.result.kind.bitwidth // 8)
+def load(lowering, array, row, first, count):
+    pointer = lowering.pointer(
+        array, [row, first], lowering.context.get_value_type(lowering.result_type)
+    )
+    return lowering.builder.load(pointer, align=lowering.result_type.kind.bitwidth // 8)
 
 
-class WholeStore(ir.instructions.StoreInstr):
-    """A store of all lanes, where LLVM would store only those that have changed: a load of all of
-    them that follows soon would have to wait for that."""
+class VectorStore(ir.instructions.StoreInstr):
+    """A store of all lanes. LLVM might store changed lanes only, and a vector load right after
+    scalar stores would stall."""
 
     def descr(self, text):
         super().descr(text)
@@ -187,85 +224,101 @@ class WholeStore(ir.instructions.StoreInstr):
 
 
 @operation(lambda array, row, first, lanes: types.none)
-def store(site, array, row, first, lanes):
-    pointer = site.pointer(array, [row, first], lanes.type)
-    instruction = WholeStore(site.builder.block, lanes, pointer)
-    instruction.align = site.kinds[3].kind.bitwidth // 8
-    site.builder._insert(instruction)
-    return site.context.get_dummy_value()
+def store(lowering, array, row, first, lanes):
+    pointer = lowering.pointer(array, [row, first], lanes.type)
+    instruction = VectorStore(lowering.builder.block, lanes, pointer)
+    instruction.align = lowering.argument_types[3].kind.bitwidth // 8
+    lowering.builder._insert(instruction)
+    return lowering.context.get_dummy_value()
 
 
-@operation(lambda places, first, count: Lanes(places.dtype, count.literal_value))
-def numbers_in(site, places, first, count):
-    here = [site.builder.add(first, WORD(k)) for k in range(site.result.count)]
-    return site.joined([site.builder.load(site.pointer(places, [place])) for place in here])
+@operation(lambda array, first, count: Lanes(array.dtype, count.literal_value))
+def load_scalars(lowering, array, first, count):
+    indices = [lowering.builder.add(first, WORD(k)) for k in range(lowering.result_type.count)]
+    pointers = [lowering.pointer(array, [index]) for index in indices]
+    return lowering.joined([lowering.builder.load(pointer) for pointer in pointers])
 
 
-def _wide(kind):
-    return types.float64 if kind == types.float32 else kind
+def _widened(number_type):
+    return types.float64 if number_type == types.float32 else number_type
 
 
-@operation(lambda array, column, numbers: Lanes(_wide(array.dtype), numbers.count))
-def gather(site, array, column, numbers):
-    kind, values = site.kinds[0], []
-    for k in range(site.result.count):
-        row = site.builder.zext(site.builder.extract_element(numbers, NUMBER(k)), WORD)
-        value = site.builder.load(site.pointer(array, [row, column][: kind.ndim]))
-        values.append(site.context.cast(site.builder, value, kind.dtype, site.result.kind))
-    return site.joined(values)
+@operation(lambda array, column, rows: Lanes(_widened(array.dtype), rows.count))
+def gather(lowering, array, column, rows):
+    (array_type, *_), builder, values = lowering.argument_types, lowering.builder, []
+    for k in range(lowering.result_type.count):
+        row = builder.zext(builder.extract_element(rows, NUMBER(k)), WORD)
+        value = builder.load(lowering.pointer(array, [row, column][: array_type.ndim]))
+        number_type = lowering.result_type.kind
+        values.append(lowering.context.cast(builder, value, array_type.dtype, number_type))
+    return lowering.joined(values)
 
 
 @operation(lambda array, row: types.none)
-def prefetch(site, array, row):
-    pointer = site.pointer(array, [row, WORD(0)][: site.kinds[0].ndim], ir.IntType(8))
-    site.call("llvm.prefetch", ir.VoidType(), pointer, NUMBER(0), NUMBER(3), NUMBER(1))
-    return site.context.get_dummy_value()
+def prefetch(lowering, array, row):
+    pointer = lowering.pointer(
+        array, [row, WORD(0)][: lowering.argument_types[0].ndim], ir.IntType(8)
+    )
+    lowering.call("llvm.prefetch", ir.VoidType(), pointer, NUMBER(0), NUMBER(3), NUMBER(1))
+    return lowering.context.get_dummy_value()
 
 
-least = operation(lambda lanes: lanes.kind)(
-    lambda site, x: site.call("llvm.vector.reduce.fmin", x.type.element, x, fastmath=("nnan",))
+horizontal_min = operation(lambda lanes: lanes.kind)(
+    lambda lowering, x: lowering.call(
+        "llvm.vector.reduce.fmin", x.type.element, x, fastmath=("nnan",)
+    )
 )
 bits = operation(lambda lanes: types.uint64)(
-    lambda site, x: site.builder.zext(site.builder.bitcast(x, ir.IntType(x.type.count)), WORD)
+    lambda lowering, x: lowering.builder.zext(
+        lowering.builder.bitcast(x, ir.IntType(x.type.count)), WORD
+    )
 )
-order = operation(lambda count: Lanes(types.float64, count.literal_value))(
-    lambda site, count: _numbers(range(site.result.count), ir.DoubleType())
+iota = operation(lambda count: Lanes(types.float64, count.literal_value))(
+    lambda lowering, count: _constants(range(lowering.result_type.count), ir.DoubleType())
 )
-trailing_zeros = operation(lambda word: types.intp)(lambda site, x: site.builder.cttz(x, BIT(0)))
+trailing_zeros = operation(lambda word: types.intp)(
+    lambda lowering, x: lowering.builder.cttz(x, BIT(0))
+)
 
 
 @operation(lambda x: types.intp)
-def integer(site, x):
-    return site.context.cast(site.builder, x, site.kinds[0], site.result)
+def integer(lowering, x):
+    return lowering.context.cast(
+        lowering.builder, x, lowering.argument_types[0], lowering.result_type
+    )
 
 
 @operation(lambda number: types.intp)
-def index(site, number):
-    site.builder.assume(site.builder.icmp_signed(">=", number, number.type(0)))
+def assume_nonnegative(lowering, number):
+    lowering.builder.assume(lowering.builder.icmp_signed(">=", number, number.type(0)))
     return number
 
 
-@operation(lambda places, number, lanes, first: types.intp)
-def append(site, places, number, mask, first):
-    """What lies beyond the places that are taken is spoiled; and there is no branch in it, which
-    the processor could not foresee."""
-    builder, count = site.builder, mask.type.count
+@operation(lambda array, length, lanes, first: types.intp)
+def append(lowering, array, length, mask, first):
+    """The array is overwritten to a register's width beyond the new length: so there is no branch,
+    which the processor could not predict."""
+    builder, count = lowering.builder, mask.type.count
     word = builder.zext(builder.bitcast(mask, ir.IntType(count)), WORD)
-    base = site.joined([builder.trunc(first, NUMBER)] * count)
-    numbers = builder.add(base, _packed(site, mask, word))
-    builder.store(numbers, site.pointer(places, [number], numbers.type), align=4)
-    return builder.add(number, builder.ctpop(word))
+    base = lowering.joined([builder.trunc(first, NUMBER)] * count)
+    numbers = builder.add(base, _set_lanes(lowering, mask, word))
+    builder.store(numbers, lowering.pointer(array, [length], numbers.type), align=4)
+    return builder.add(length, builder.ctpop(word))
 
 
-def _packed(site, mask, word):
-    """Return which lanes hold, in the first lanes: of 16 by an instruction, of 8 from a table."""
-    kind = ir.VectorType(NUMBER, mask.type.count)
+def _set_lanes(lowering, mask, word):
+    """Return the numbers of the lanes that are set, packed into the first lanes: of 16 by an
+    instruction, of 8 from a table."""
+    result_type = ir.VectorType(NUMBER, mask.type.count)
     if mask.type.count == 16:
         name = "llvm.x86.avx512.mask.compress"
-        return site.call(name, kind, _numbers(range(16)), ir.Constant(kind, None), mask)
-    rows = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
-    rows = [_numbers(one + [0] * (8 - len(one)), ir.IntType(8)) for one in rows]
-    table = ir.Constant(ir.ArrayType(rows[0].type, 256), rows)
-    table = cgutils.global_constant(site.builder, "roughgas.bits_set", table)
-    row = site.builder.load(site.builder.gep(table, [WORD(0), word]), align=8)
-    return site.builder.zext(row, kind)
+        zeros = ir.Constant(result_type, None)
+        return lowering.call(name, result_type, _constants(range(16)), zeros, mask)
+    packed = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
+    rows = [_constants(row + [0] * (8 - len(row)), ir.IntType(8)) for row in packed]
+    content = ir.Constant(ir.ArrayType(rows[0].type, 256), rows)
+    module = lowering.builder.module
+    table = ir.GlobalVariable(module, content.type, module.get_unique_name("roughgas.bits_set"))
+    table.linkage, table.global_constant, table.initializer = "internal", True, content
+    row = lowering.builder.load(lowering.builder.gep(table, [WORD(0), word]), align=8)
+    return lowering.builder.zext(row, result_type)

@@ -1,308 +1,351 @@
-"""Studies: folders that hold a question beyond the paper each, found by being there.
+"""Studies: each folder studies/NAME with a config.yaml is a study, discovered automatically.
 
-A folder studies/NAME with a config.yaml is one. It has experiments, which may extend the paper's,
-and what scales change in them; from outside its experiment KEY is NAME.KEY. A study that is broken
-is left out, with the error that says why: the paper's experiments and other studies stand without
-it.
+It has experiments, which may extend the paper's, and changes to them at each scale; elsewhere its
+experiment KEY is called NAME.KEY. A broken study is left out, and its error recorded: the paper's
+experiments and other studies do not depend on it.
 
-With all studies, and all that a scale changes, written out, a configuration is complete.
+A configuration that includes all studies and the changes of its scale is complete.
 """
 
 import json
-import re
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-from roughgas import config as settings_of
-from roughgas.base import InputError, shown
-from roughgas.base.files import readme, write_text
-from roughgas.config.reading import read_yaml
-from roughgas.config.schema import RESERVED, check_ancestors, check_by, check_one, check_schema
+from roughgas.base import InputError, check_one_of, merged, short_repr
+from roughgas.base.fields import OwnSettings
+from roughgas.base.files import LEGAL_FILE, write_text
+from roughgas.base.reading import read_yaml
+from roughgas.config.configuration import ACCURACY, Configuration
+from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, shipped_studies
+from roughgas.config.study import TaskSettings
+from roughgas.config.written_study import (
+    TASKS,
+    StudyFile,
+    WrittenStudy,
+    config_name,
+    root_experiments,
+)
 
-FOLDER, TASKS = "studies", "tasks"
 HEAD = """\
 # The complete configuration of the scale `{scale}`: what experiments inherit from each other, and
 # what the scale and the command line change, is written out. Used in place of config.yaml, it gives
 # the same results.
 """
-USUAL_SCALES = ("paper", "small")
-"""Scales for which a study may have changes though the configuration does not have the scale."""
 
 
-def folders(path: str | Path) -> dict[str, Path]:
-    """Return the folders of studies by name, of the present folder and of that of the configuration
-    at `path`; the former counts where both have one of a name."""
-    places = Path(path).resolve().parent / FOLDER, Path(FOLDER)
-    every = [file.parent for place in places for file in sorted(place.glob("*/config.yaml"))]
-    return {folder.name: folder for folder in every}
+def folders(*files: str | Path) -> dict[str, Path]:
+    """Return the folders of studies by name, from studies/ beside the `files` of a configuration.
 
-
-def joined(
-    config: Mapping[str, Any], path: str | Path, source: str, only: str | None = None
-) -> dict[str, Any]:
-    """Return a configuration with all studies, each checked at every scale.
-
-    Their experiments and scales join those of `config`, where NAME.KEY changes an experiment of
-    the study NAME. The key FOLDERS has what else there is to each study: `folder`, `title`,
-    `experiments` that are swept, `figures` (the experiments that each shows), `movies`, `evidence`
-    (the experiments that stand beside published numbers), and `tasks` (their `settings` by scale,
-    and their `experiments`), where it has any; the key BROKEN has the arguments of the InputError
-    of each that is broken. With `only` one study joins, and those that
-    it extends. Raises InputError where `config` changes an experiment that no study has.
+    Studies of the present folder are included, and the package's SHIPPED_STUDIES. Among folders
+    with the same name the present folder's takes precedence, then the last file's.
     """
-    whole = {**config, settings_of.FOLDERS: {}, settings_of.BROKEN: {}}
-    if config.get("complete"):
-        return whole
-    found, broken = _read_all(config, folders(path), only)
-    whole |= {settings_of.BROKEN: broken, "experiments": _of_root(config["experiments"])}
-    whole["scales"] = {scale: _of_root(one) for scale, one in config["scales"].items()}
-    for name in _in_order(found, broken):
+    search_folders = (
+        *(Path(file).resolve().parent / STUDIES_FOLDER for file in files),
+        Path(STUDIES_FOLDER),
+    )
+    candidates = [shipped_studies() / name for name in SHIPPED_STUDIES]
+    candidates += [
+        folder for search_folder in search_folders for folder in sorted(search_folder.glob("*"))
+    ]
+    return {
+        folder.name: folder for folder in candidates if folder.is_dir() and _may_be_study(folder)
+    }
+
+
+def _may_be_study(folder: Path) -> bool:
+    """Return whether a folder has a config.yaml, or cannot be read, which is then reported."""
+    return not os.access(folder, os.R_OK | os.X_OK) or (folder / "config.yaml").exists()
+
+
+def with_studies(
+    configuration: Configuration, files: Iterable[str | Path], only: str | None = None
+) -> Configuration:
+    """Return a configuration, read from `files`, with all studies, each checked at every scale.
+
+    Their experiments and scales are added to `configuration`, whose NAME.KEY changes an experiment
+    of the study NAME. With `only`, the name of a study, this study is added with the studies that
+    it needs. Raises InputError where `configuration` changes an experiment that no study has, or
+    makes settings of accuracy illegal.
+
+    A complete configuration includes the settings of accuracy; only the studies of accuracy, and
+    those without experiments or tasks, are added to it.
+    """
+    study_files, refused = _read_all(configuration, folders(*files), only)
+    if only is None:
+        _check_accuracy(configuration, study_files.values())
+    if configuration.complete:
+        study_files = {
+            name: file
+            for name, file in study_files.items()
+            if file.shows_root_only or file.has_accuracy_settings
+        }
+        refused = {name: refused[name] for name in SHIPPED_STUDIES if name in refused}
+        return _with_all(configuration, configuration, study_files, refused)
+    combined = replace(
+        configuration,
+        experiments={
+            name: configuration.experiments[name] for name in root_experiments(configuration)
+        },
+        scales={
+            scale: {key: settings for key, settings in changes.items() if "." not in key}
+            for scale, changes in configuration.scales.items()
+        },
+    )
+    combined = _with_all(combined, configuration, study_files, refused)
+    if only is None:
+        _check_changes(configuration, combined, combined.refused)
+    return combined
+
+
+def _with_all(
+    combined: Configuration,
+    configuration: Configuration,
+    study_files: Mapping[str, StudyFile],
+    refused: dict[str, tuple[Any, ...]],
+) -> Configuration:
+    """Return the configuration `combined` with all legal studies, and the errors of broken studies.
+
+    `configuration` has the changes to experiments of studies. `refused` holds the arguments of the
+    InputError of each broken study, and is extended in place.
+    """
+    for name in _in_order(study_files, refused):
         try:
-            whole = _with_study(whole, config, name, found[name])
+            combined = _with_study(combined, configuration, name, study_files[name])
         except InputError as error:
-            broken[name] = error.args
-    for part in (config["experiments"], *config["scales"].values()):
-        for key in part:
-            study, _, own = key.partition(".")
-            lacks = key not in whole["experiments"] and study not in broken
-            lacks = lacks and not (own == TASKS in whole[settings_of.FOLDERS].get(study, {}))
-            if "." in key and lacks and only is None:
+            refused[name] = error.args
+    return replace(combined, refused=refused)
+
+
+def _check_changes(
+    configuration: Configuration, combined: Configuration, refused: Mapping[str, tuple[Any, ...]]
+) -> None:
+    """Raise InputError for changes to an experiment, or to tasks, that no study has.
+
+    `configuration` has the changes, `combined` the studies; changes to the studies in `refused`,
+    which are broken, pass.
+    """
+    for changes in (configuration.experiments, *configuration.scales.values()):
+        for key in changes:
+            name, dot, experiment = key.partition(".")
+            has_tasks = name in combined.studies and combined.studies[name].tasks is not None
+            is_known = key in combined.experiments or name in refused
+            if dot and not is_known and not (experiment == TASKS and has_tasks):
                 legal = "be STUDY.EXPERIMENT of a folder of studies/"
-                raise InputError(f"{source}: key", shown(key), legal)
-    return whole
-
-
-def _of_root(part: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in part.items() if "." not in key}
-
-
-def _source(name: str) -> str:
-    return f"{FOLDER}/{name}/config.yaml"
+                raise InputError(f"{configuration.source}: key", short_repr(key), legal)
 
 
 def _read_all(
-    config: Mapping[str, Any], known: Mapping[str, Path], only: str | None
-) -> tuple[dict[str, dict[str, Any]], dict[str, tuple]]:
-    """Return studies as they stand in their folders, names qualified, and errors of the others."""
-    found: dict[str, dict[str, Any]] = {}
-    broken: dict[str, tuple] = {}
-    asked = list(known) if only is None else [only]
-    for name in asked:
-        if name in known and name not in found and name not in broken:
-            try:
-                found[name] = _read(name, known[name], config)
-                asked += _needs(name, found[name])
-            except InputError as error:
-                broken[name] = error.args
-            except OSError as error:
-                broken[name] = _source(name), error.strerror, "be a file to read"
-    return found, broken
+    configuration: Configuration, folders_by_name: Mapping[str, Path], only: str | None
+) -> tuple[dict[str, StudyFile], dict[str, tuple[Any, ...]]]:
+    """Return the studies as read from their folders, and errors of broken studies, by name.
 
-
-def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the experiments of a study, names qualified, its changes by scale, and all else.
-
-    Its title is the heading of its README.md, its name without one.
+    With `only`, the name of a study, it reads this study and the studies that it needs. An error is
+    given by the arguments of its InputError.
     """
-    source, root = _source(name), _of_root(config["experiments"])
-    study = _checked(name, folder, root)
-    own = study.get("experiments", {})
-
-    def qualified(key: str, where: str) -> str:
-        base, slash, variant = key.partition("/")
-        if "." not in base:
-            settings_of.one_of(f"{source}: {where}", base, {**own, **root})
-        return f"{name}.{base}{slash}{variant}" if base in own else key
-
-    experiments, scales = {}, {}
-    for key, one in own.items():
-        if "extends" in one:
-            one = one | {"extends": qualified(one["extends"], f"experiments.{key}.extends")}
-        experiments[f"{name}.{key}"] = one
-    changeable = [*own, *([TASKS] if TASKS in study else [])]
-    for scale, changes in study.get("scales", {}).items():
-        settings_of.one_of(f"{source}: scale", scale, {*config["scales"], *USUAL_SCALES})
-        for key in changes:
-            settings_of.one_of(f"{source}: key of scales.{scale}", key, changeable)
-        scales[scale] = {f"{name}.{key}": one for key, one in changes.items()}
-    heading = re.match(r"# (.+)", readme(folder))
-    title = heading[1].strip() if heading else name.replace("_", " ").capitalize()
-    about: dict[str, Any] = {"folder": str(folder), "title": title}
-    if TASKS in study:
-        settings = dict(study[TASKS])
-        names = {one: qualified(one, "tasks.experiments") for one in settings.pop("experiments")}
-        about[TASKS] = {"settings": settings, "experiments": names}
-    of_tasks = about[TASKS]["experiments"].values() if TASKS in about else ()
-    about["experiments"] = [key for key in experiments if key not in of_tasks]
-    about |= _shown(name, study, about, qualified)
-    return {"experiments": experiments, "scales": scales, "about": about}
+    study_files: dict[str, StudyFile] = {}
+    refused: dict[str, tuple[Any, ...]] = {}
+    pending = list(folders_by_name) if only is None else [only]
+    for name in pending:
+        if name in folders_by_name and name not in study_files and name not in refused:
+            try:
+                study_files[name] = WrittenStudy(name, folders_by_name[name]).file(configuration)
+                pending += _needs(name, study_files[name])
+            except InputError as error:
+                refused[name] = error.args
+            except OSError as error:
+                refused[name] = str(error.filename or config_name(name)), error.strerror, LEGAL_FILE
+    return study_files, refused
 
 
-def _shown(
-    name: str,
-    study: Mapping[str, Any],
-    about: Mapping[str, Any],
-    qualified: Callable[[str, str], str],
-) -> dict[str, Any]:
-    """Return which experiments the figures, movies and evidence of a study show."""
-
-    def these(names: list[str], where: str) -> list[str]:
-        return [one if one == TASKS and TASKS in about else qualified(one, where) for one in names]
-
-    every = [key.partition(".")[2] for key in about["experiments"]] + [TASKS] * (TASKS in about)
-    usual = {name: every} if Path(about["folder"], "figure.py").exists() else {}
-    figures = {
-        figure: these(shows, f"figures.{figure}")
-        for figure, shows in study.get("figures", usual).items()
-    }
-    movies = {
-        movie: [qualified((shows.split() or [""])[0], f"movies.{movie}"), *shows.split()[1:]]
-        for movie, shows in study.get("movies", {}).items()
-    }
-    beside = every if Path(about["folder"], "evidence.py").exists() else []
-    evidence = these(study.get("evidence", beside), "evidence")
-    return {"figures": figures, "movies": movies} | ({"evidence": evidence} if evidence else {})
+def _needs(name: str, file: StudyFile) -> set[str]:
+    """Return the names of the other studies whose experiments the study `name` extends or shows."""
+    study = file.study
+    names = [settings.get("extends") or "" for settings in file.experiments.values()]
+    names += [key for shows in (study.figures or {}).values() for key in shows]
+    names += study.evidence
+    names += [words[0] for words in (study.movies or {}).values()]
+    return {key.partition(".")[0] for key in names if "." in key} - {name}
 
 
-def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]:
-    """Return config.yaml of a study, checked by itself and for names that others have."""
-    source = _source(name)
-    check_schema(name, f"{FOLDER}: folder", "name")
-    if name in RESERVED or name in root:
-        legal = "have another name: the workflow has a rule, a product or an experiment of this one"
-        raise InputError(f"{FOLDER}: folder", name, legal)
-    study: dict[str, Any] = read_yaml(folder / "config.yaml", source)
-    check_schema(study, source, "study_folder")
-    if (folder / "claims.yaml").exists():
-        claims = f"{FOLDER}/{name}/claims.yaml"
-        check_schema(read_yaml(folder / "claims.yaml", claims), claims, "claims")
-    if TASKS not in study and "experiments" not in study:
-        raise InputError(f"{source}: experiments", "(nothing)", "be given")
-    if (folder / "tasks.py").exists() and TASKS not in study:
-        raise InputError(f"{source}: tasks", "(nothing)", "be given beside tasks.py")
-    for file, key in (("evidence", "evidence"), ("tasks", TASKS), ("results", TASKS)):
-        if key in study and not (folder / f"{file}.py").exists():
-            legal = f"be there, as config.yaml has {key}"
-            raise InputError(f"{FOLDER}/{name}/{file}.py", "(nothing)", legal)
-    for key in study.get("experiments", {}).keys() & {*root, TASKS}:
-        raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
-    for part in ("figures", "movies"):
-        for key in study.get(part, ()):
-            if key != name and not key.startswith(f"{name}_"):
-                legal = f"be {name} or begin with {name}_"
-                raise InputError(f"{source}: key of {part}", key, legal)
-    return study
+def _in_order(
+    study_files: Mapping[str, StudyFile], refused: dict[str, tuple[Any, ...]]
+) -> list[str]:
+    """Return the names of studies in the order of their dependencies; cycles are refused.
 
-
-def _needs(name: str, study: Mapping[str, Any]) -> set[str]:
-    """Return the other studies whose experiments this one extends or shows."""
-    about = study["about"]
-    named = [one.get("extends", "") for one in study["experiments"].values()]
-    named += [key for shows in about["figures"].values() for key in shows]
-    named += about.get("evidence", [])
-    named += [shows[0] for shows in about["movies"].values()]
-    return {key.partition(".")[0] for key in named if "." in key} - {name}
-
-
-def _in_order(found: Mapping[str, dict[str, Any]], broken: dict[str, tuple]) -> list[str]:
-    """Return names of studies, each after those that it needs; circles are broken."""
-    left = dict(found)
+    `refused` is extended in place by the arguments of their InputErrors.
+    """
+    remaining = dict(study_files)
     while True:
-        needs = {name: _needs(name, study) & left.keys() for name, study in left.items()}
+        needs = {name: _needs(name, file) & remaining.keys() for name, file in remaining.items()}
         try:
             return [*TopologicalSorter(needs).static_order()]
         except CycleError as error:
             for name in set(error.args[1]):
                 legal = "not extend a study that itself extends this one"
-                broken[name] = _source(name), " -> ".join(error.args[1]), legal
-                del left[name]
+                refused[name] = config_name(name), " -> ".join(error.args[1]), legal
+                del remaining[name]
 
 
 def _with_study(
-    whole: Mapping[str, Any], config: Mapping[str, Any], name: str, study: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the configuration with one more study; raise InputError where that is illegal."""
-    changes = config["experiments"]
-    together = partial(settings_of.merged, removing=False)
-    own = study["experiments"].items()
-    experiments = {key: together(one, changes.get(key, {})) for key, one in own}
-    scales = {}
-    for scale, known in whole["scales"].items():
-        own, changes = study["scales"].get(scale, {}), config["scales"][scale]
-        keys = [key for key in experiments if key in own or key in changes]
-        of_study = {key: together(own.get(key, {}), changes.get(key, {})) for key in keys}
-        scales[scale] = {**known, **of_study}
-    joined = {**whole, "experiments": whole["experiments"] | experiments, "scales": scales}
-    source, about = _source(name), study["about"]
-    for key in experiments:
-        check_ancestors(key, joined["experiments"], source)
-        for scale in scales:
-            check_one(joined, key, scale, source)
-    used = [("figures", key) for shows in about["figures"].values() for key in shows]
-    for part, key in [*used, *(("evidence", key) for key in about.get("evidence", []))]:
-        settings_of.one_of(f"{source}: {part}", key, {TASKS, *joined["experiments"]})
-    if TASKS in about:
-        about = about | {TASKS: about[TASKS] | {"settings": _at_scales(config, name, study)}}
-    return joined | {settings_of.FOLDERS: whole[settings_of.FOLDERS] | {name: about}}
+    combined: Configuration, configuration: Configuration, name: str, file: StudyFile
+) -> Configuration:
+    """Return the configuration `combined` with the study `name`, read from `file`, added.
 
-
-def _at_scales(config: Mapping[str, Any], name: str, study: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a study's tasks by scale, checked."""
-    found, key, about = {}, f"{name}.{TASKS}", study["about"]
-    for scale, root in config["scales"].items():
-        settings = about[TASKS]["settings"]
-        for changes in (study["scales"].get(scale, {}), root):
-            settings = settings_of.merged(settings, changes.get(key, {}))
-        at_scale = "" if scale == config["scale"] else f" at scale {scale}"
-        check_tasks(about["folder"], settings, f"{_source(name)}: tasks{at_scale}")
-        found[scale] = settings
-    return found
-
-
-def check_tasks(folder: str | Path, settings: Mapping[str, Any], source: str) -> None:
-    """Check settings of tasks, which messages call `source`, by schema.yaml of the study in
-    `folder`, where there is one.
-
-    It may use the definitions and formats of the schema of config.yaml. Raises InputError.
+    `configuration` has the changes to its experiments. Raises InputError if the study is illegal.
     """
+    merge_keeping_none = partial(merged, removing=False)
+    changes = configuration.experiments
+    experiments = {
+        key: merge_keeping_none(settings, changes.get(key, {}))
+        for key, settings in file.experiments.items()
+    }
+    scales = {}
+    for scale, scale_changes in combined.scales.items():
+        in_study, changes = file.scales.get(scale, {}), configuration.scales[scale]
+        keys = [key for key in experiments if key in in_study or key in changes]
+        of_study = {
+            key: merge_keeping_none(in_study.get(key, {}), changes.get(key, {})) for key in keys
+        }
+        scales[scale] = {**scale_changes, **of_study}
+    combined = replace(combined, experiments={**combined.experiments, **experiments}, scales=scales)
+    source, study = config_name(name), file.study
+    for key in experiments:
+        combined.check_ancestors(key, source)
+        for scale in scales:
+            combined.check_experiment(key, scale, source)
+    references = [("figures", key) for shows in (study.figures or {}).values() for key in shows]
+    legal_references = {TASKS, *study.modules, *combined.experiments}
+    for products, key in [*references, *(("evidence", key) for key in study.evidence)]:
+        if not file.shows_root_only:
+            check_one_of(f"{source}: {products}", key, legal_references)
+    if study.tasks is not None:
+        settings = _task_settings(configuration, name, file)
+        study = replace(study, tasks=replace(study.tasks, settings=settings))
+    return replace(combined, studies={**combined.studies, name: study})
+
+
+def _task_settings(
+    configuration: Configuration, name: str, file: StudyFile
+) -> dict[str, OwnSettings]:
+    """Return the checked settings of the tasks of the study `name`, by scale."""
+    settings_at = {}
+    for scale in configuration.scales:
+        settings = _written_settings(configuration, name, file, scale)
+        at_scale = "" if scale == configuration.scale else f" at scale {scale}"
+        source = f"{config_name(name)}: tasks{at_scale}"
+        for module in file.study.modules:
+            if module not in settings:
+                raise InputError(f"{source}.{module}", "(nothing)", "be given")
+        check_tasks(file.study.folder, settings, source)
+        settings_at[scale] = settings
+    return settings_at
+
+
+def _written_settings(
+    configuration: Configuration, name: str, file: StudyFile, scale: str
+) -> OwnSettings:
+    """Return the settings of the tasks of the study `name` at a scale, unchecked.
+
+    Settings for a scale take precedence over settings for all scales, and the configuration's over
+    the study's. Settings of accuracy in a complete configuration inherit nothing from the study.
+    """
+    key, root, at_scale = f"{name}.{TASKS}", configuration.scales[scale], file.scales.get(scale, {})
+    accuracy, accuracy_at_scale = (
+        {module: changes[module] for module in file.study.modules if module in changes}
+        if file.has_accuracy_settings
+        else {}
+        for changes in (configuration.accuracy or {}, root.get(ACCURACY) or {})
+    )
+    layers: list[OwnSettings] = [accuracy, accuracy_at_scale]
+    if not (configuration.complete and configuration.accuracy is not None):
+        study, scaled, changed = file.tasks or {}, at_scale.get(key, {}), root.get(key, {})
+        layers = [study, accuracy, scaled, changed, accuracy_at_scale]
+    settings: OwnSettings = {}
+    for layer in layers:
+        settings = merged(settings, layer)
+    return settings
+
+
+def _check_accuracy(configuration: Configuration, study_files: Iterable[StudyFile]) -> None:
+    """Raise InputError if changes in `configuration` make the settings of accuracy illegal."""
+    for file in study_files:
+        for scale, root in configuration.scales.items():
+            if file.has_accuracy_settings and (configuration.accuracy or root.get(ACCURACY)):
+                folder = Path(file.study.folder)
+                settings = _written_settings(configuration, folder.name, file, scale)
+                check_tasks(folder, settings, f"{configuration.source}: accuracy at scale {scale}")
+
+
+def check_tasks(
+    folder: str | Path, settings: OwnSettings, source: str, module: str | None = None
+) -> None:
+    """Check settings of tasks against schema.yaml of the study in `folder`, if it exists.
+
+    With `module`, the settings of this module are checked against its property there. Messages call
+    the settings `source`. The schema may use definitions and formats of the schema of config.yaml.
+    Raises InputError.
+    """
+    from roughgas.config.json_schema import check_by
+
     path = Path(folder, "schema.yaml")
     if path.exists():
-        called = f"{FOLDER}/{path.parent.name}/{path.name}"
-        check_by(read_yaml(path, called), settings, source, called)
+        schema_name = f"{STUDIES_FOLDER}/{path.parent.name}/{path.name}"
+        schema = read_yaml(path, schema_name, pipes=False)
+        if module is not None:
+            schema = {"$defs": schema.get("$defs", {}), **schema["properties"][module]}
+        check_by(schema, settings, source, schema_name)
 
 
-def tasks(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    """Return the settings of a study's tasks at `scale`, as `study`, and those of the experiments
-    that they may run, as `experiments`."""
-    about = config[settings_of.FOLDERS][name][TASKS]
-    settings_of.one_of("scale", scale, about["settings"])
+def task_settings(
+    configuration: Configuration, name: str, scale: str, module: str | None = None
+) -> TaskSettings:
+    """Return the settings at `scale` of the tasks of the study `name`, and of experiments they run.
+
+    With `module` they are the settings of this module's tasks. If tasks may run all experiments,
+    these are called KEY instead of NAME.KEY. Raises InputError for an unknown scale or module.
+    """
+    study = configuration.studies[name]
+    tasks = study.tasks
+    assert tasks is not None
+    check_one_of("scale", scale, tasks.settings)
+    settings = tasks.settings[scale]
+    if module is not None:
+        check_one_of("module", module, study.modules)
+        settings = settings[module]
+    full_names = tasks.experiments
+    if full_names is None:
+        full_names = {
+            full_name.rpartition(".")[2]: full_name for full_name in configuration.experiments
+        }
     experiments = {
-        local: settings_of.point_settings(settings_of.experiment(config, one, scale))
-        for local, one in about["experiments"].items()
+        task_name: configuration.experiment(full_name, scale).for_points().raw
+        for task_name, full_name in full_names.items()
     }
-    return {"study": about["settings"][scale], "experiments": experiments}
+    return TaskSettings(settings, experiments)
 
 
-def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) -> None:
-    """Write a configuration whose only scale is `scale`, which changes nothing, as YAML.
+def write_effective(configuration: Configuration, scale: str, output: str | Path) -> None:
+    """Write a configuration at `scale` as YAML, complete, with this as its only, empty scale.
 
-    Raises InputError for an unknown scale.
+    What experiments inherit is written out. Raises InputError for an unknown scale.
     """
     import yaml
 
-    names = whole["experiments"]
-    effective = {
+    names = configuration.experiments
+    effective: dict[str, Any] = {
         "complete": True,
         "scale": scale,
-        "seeds_per_job": whole.get("seeds_per_job", settings_of.SEEDS_PER_JOB),
-        "betas_per_job": whole.get("betas_per_job", 1),
-        "experiments": {name: settings_of.experiment(whole, name, scale) for name in names},
+        "seeds_per_job": configuration.seeds_per_job,
+        "betas_per_job": configuration.betas_per_job,
+        "experiments": {name: configuration.experiment(name, scale).raw for name in names},
     }
-    if settings_of.ACCURACY in whole:
-        effective[settings_of.ACCURACY] = settings_of.accuracy(whole, scale)
+    if accuracy := configuration.accuracy_at(scale):
+        effective[ACCURACY] = accuracy
     effective["scales"] = {scale: {}}
     plain = json.loads(json.dumps(effective))  # without anchors
     text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)

@@ -1,6 +1,5 @@
-"""The reduced dataset of an experiment, over r and beta: what figures, tables and verdicts read."""
+"""Reduced datasets of experiments, over r and beta: the input of figures, tables and verdicts."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,78 +8,97 @@ import numpy as np
 from roughgas.base import InputError, Interval
 from roughgas.data import netcdf, variables
 from roughgas.data.netcdf import read_netcdf
-from roughgas.data.variables import NAMES, POINT, SCATTER, STAGES, Variable, error_of
+from roughgas.data.variables import (
+    POINT,
+    POINT_COORDINATES,
+    SCATTER,
+    SPECIES_VARIABLES,
+    STAGES,
+    Variable,
+    error_of,
+)
 
 if TYPE_CHECKING:
     import xarray
 
-GRID = ("r", "beta")
-EQUILIBRATED = 0.5
-"""A point counts as being in a steady state where more than this share of its seeds is."""
-TRUSTED = tuple(
-    name for name in POINT if name.endswith(variables.TRUSTED) and name != "R_ci95_trusted"
+GRID_DIMS = ("r", "beta")
+STEADY_SHARE = 0.5
+"""Share of seeds in a steady state above which a point counts as steady."""
+TRUST_FLAGS = tuple(
+    name for name in POINT if name.endswith(variables.TRUSTED_SUFFIX) and name != "R_ci95_trusted"
 )
-"""Verdicts on the errors of other numbers than R."""
-VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met", *TRUSTED}
-SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
-UNSURE = {
+"""Verdicts on the errors of variables other than R."""
+VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met", *TRUST_FLAGS}
+FRACTION, NON_NEGATIVE, VERDICT_RANGE = (
+    Interval("[0, 1]"),
+    Interval("[0, inf)"),
+    Interval("[-1, 1]"),
+)
+UNCERTAINTIES = {
     f"{name}_{quality}": Interval("[0, inf]")
-    for name in ("R", "R_collisional", "E_trans", "E_rot")
+    for name in ("R", "R_collisional", "vertical_share", "E_trans", "E_rot")
     for quality in ("stderr", "dof", "ci95")
 }
-"""Those that may be unknown, which is NaN."""
-SOUND = {
-    **dict.fromkeys(("R", "R_ratio_of_means", "R_corrected"), SHARE),
-    **dict.fromkeys(("E_trans", "E_rot", "collisions", "kernel_seconds"), AMOUNT),
-    **dict.fromkeys(sorted(VERDICTS), VERDICT),
-    **UNSURE,
+"""Legal values of uncertainties, which may also be NaN, unknown."""
+LEGAL_VALUES = {
+    **dict.fromkeys(("R", "R_ratio_of_means", "R_corrected", "vertical_share"), FRACTION),
+    **dict.fromkeys(("E_trans", "E_rot", "collisions", "kernel_seconds"), NON_NEGATIVE),
+    **dict.fromkeys(sorted(VERDICTS), VERDICT_RANGE),
+    **UNCERTAINTIES,
 }
-"""What numbers of a simulation lie in, whatever was simulated."""
+"""Legal values of variables of any simulation."""
 
 
 def read_reduced(path: str | Path) -> "xarray.Dataset":
-    """Return a reduced dataset in memory; the file is closed.
+    """Return the reduced dataset at `path` in memory; the file is closed.
 
-    Raises InputError if the file is something else or damaged, or if a number in it cannot be
-    right; OSError if there is none.
+    Raises InputError if the file is no reduced dataset or damaged, or if a number in it is
+    impossible; OSError if it cannot be read.
     """
     data = read_netcdf(path, netcdf.REDUCED)
-    for name in SOUND.keys() & data.keys():
-        check_sound(path, name, data[name].where(data.n_seeds > 0, 0.0).values)
+    _check_numbers(path, "n_seeds", data.n_seeds.values)
+    for name in LEGAL_VALUES.keys() & data.keys():
+        _check_numbers(path, name, data[name].values)
+        check_legal(path, name, data[name].where(data.n_seeds > 0, 0.0).values)
     return data
 
 
 def read_by_name(path: str | Path) -> "dict[str, xarray.Dataset]":
-    """Return a reduced dataset by its experiment, or what tasks have found by their study.
+    """Return the reduced dataset at `path` by its experiment, or results of tasks by their study.
 
     Raises InputError and OSError as `read_reduced`.
     """
     with netcdf.opened(path, netcdf.REDUCED, netcdf.STUDIES) as file:
-        is_reduced = netcdf.kind_of(file) == netcdf.REDUCED
+        is_reduced = netcdf.file_type_of(file) == netcdf.REDUCED
     if not is_reduced:
         return netcdf.read_groups(path)
     data = read_reduced(path)
     return {data.attrs["experiment"]: data}
 
 
-def check_sound(path: str | Path, name: str, values: Any) -> None:
-    """Raise InputError for the first of `values`, of one of SOUND, that cannot be right."""
-    right = SOUND[name].holds(values) | ((name in UNSURE) & np.isnan(values))
-    wrong = np.atleast_1d(values)[~np.atleast_1d(right)]
-    if wrong.size:
-        raise InputError(f"{name} of {path}", wrong[0], SOUND[name].legal)
+def check_legal(path: str | Path, name: str, values: Any) -> None:
+    """Raise InputError unless all `values` of the variable `name` are numbers in LEGAL_VALUES.
 
-
-def third_axis(attributes: Mapping[str, Any]) -> str | None:
-    """Return the dimension besides r and beta of a dataset with these attributes; None without it.
-
-    The parameter in `swept` names it: `inertia` for spin.inertia.
+    Messages name the file at `path`. Uncertainties may also be NaN.
     """
-    return attributes["swept"].rpartition(".")[2] if "swept" in attributes else None
+    _check_numbers(path, name, np.asarray(values))
+    is_legal = LEGAL_VALUES[name].holds(values) | ((name in UNCERTAINTIES) & np.isnan(values))
+    illegal = np.atleast_1d(values)[~np.atleast_1d(is_legal)]
+    if illegal.size:
+        raise InputError(f"{name} of {path}", illegal[0], LEGAL_VALUES[name].legal)
+
+
+def _check_numbers(path, name, values):
+    """Raise InputError unless the array `values` of a variable holds real numbers.
+
+    Text and dates are none.
+    """
+    if values.dtype.kind not in "iuf":
+        raise InputError(f"{name} of {path}", f"of type {values.dtype}", "be real numbers")
 
 
 def particles_of(data: "xarray.Dataset") -> str:
-    """Return the number of particles as text: a range where it is swept."""
+    """Return the number of particles of a reduced dataset as text; a range if it is swept."""
     if "particles" not in data.coords:
         return str(data.attrs["particles"])
     numbers = data.coords["particles"].values
@@ -88,49 +106,59 @@ def particles_of(data: "xarray.Dataset") -> str:
 
 
 def _derived(long_name: str, units: str = "1", dtype: str = "f8") -> Variable:
-    return Variable(long_name, units, (variables.GRID,), dtype, over_seeds="")
+    """Return the description of a variable over the grid that files of points do not have."""
+    return Variable(long_name, units, (variables.GRID_PLACEHOLDER,), dtype, over_seeds="")
 
 
-def _over_grid(about: Variable, **changes: Any) -> Variable:
-    dtype = about.dtype if about.over_seeds == "sum" else "f8"
-    dims = (variables.GRID, *about.dims)
-    return about._replace(dims=dims, dtype=dtype, flags="")._replace(**changes)
+def _over_grid(variable: Variable, **changes: Any) -> Variable:
+    """Return the description of a point's variable with the dimensions of the grid in front.
+
+    `changes` replace fields of the description.
+    """
+    dtype = variable.dtype if variable.over_seeds == "sum" else "f8"
+    dims = (variables.GRID_PLACEHOLDER, *variable.dims)
+    return variable._replace(dims=dims, dtype=dtype, flags="")._replace(**changes)
 
 
-POOLED = ("R", "R_collisional", "contact_correlation")
-"""Means over seeds whose error pools their scatter with the errors of the seeds themselves."""
+POOLED = ("R", "R_collisional", "contact_correlation", "vertical_share")
+"""Means over seeds whose error pools their scatter with the errors within each seed."""
 SCATTERED = (
     *("R_ratio_of_means", "R_corrected", "R_unsubtracted", "R_drift", "E_trans", "E_rot"),
     *("input_spin_share", "decay_exponent", "shear_rate"),
     *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
 )
-"""Those that carry an error from their scatter."""
-OF_COOLING = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
-"""What a cooling gas without an R for all times has over time."""
-OF_STAGES = (
+"""Means over seeds with an error from their scatter."""
+COOLING_SERIES = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
+"""Series of a cooling gas without a constant R."""
+STAGE_VARIABLES = (
     *("E_rot_series", "collisions_series", "energy_input_series", "energy_gain_series"),
     *("stage_begin", "stage_input"),
 )
-"""What a gas through stages has besides, of those over more than r and beta."""
-STAGED = ("E_trans_series", "R_series", *OF_STAGES[:4], "stage_input")
-"""Those that carry an error there."""
+"""Further variables of a gas through stages with more dimensions than r and beta."""
+STAGE_VARIABLES_WITH_ERRORS = ("E_trans_series", "R_series", *STAGE_VARIABLES[:4], "stage_input")
+"""Series and inputs of a gas through stages with an error from their scatter over seeds."""
+SERIES_OF_SEEDS = ("E_trans_series", "E_rot_series", "collisions_series")
+"""Series of a gas through stages that are also kept for each seed, as NAME_seed.
+
+Instants of a series are correlated, and so are a curve and its unit: errors of numbers that are
+derived from curves need the seeds."""
 
 _WITHOUT_ERRORS = {
-    name: _over_grid(about)
-    for name, about in POINT.items()
-    if about.over_seeds and about.dims in ((), ("species",))
+    name: _over_grid(variable)
+    for name, variable in POINT.items()
+    if variable.over_seeds and variable.dims in ((), ("species",))
 } | {
-    "species": NAMES["species"],
+    "species": SPECIES_VARIABLES["species"],
     "T_ratio_species": Variable(
         "E_trans_species over that of the first species: mean of the ratios of the seeds",
-        dims=(variables.GRID, "species"),
+        dims=(variables.GRID_PLACEHOLDER, "species"),
         when=(variables.MIXTURE,),
         over_seeds="",
     ),
     "R_drift": _derived(
         "mean of R in the second half of the measured window minus that in the first"
     ),
-    "R_seed": Variable("R of each seed", dims=(variables.GRID, "seed"), over_seeds=""),
+    "R_seed": Variable("R of each seed", dims=(variables.GRID_PLACEHOLDER, "seed"), over_seeds=""),
     "R_ci95_trusted": _derived(
         "share of seeds whose R_ci95 holds the truth as often as it says; -1 where most have too "
         "little to tell"
@@ -142,10 +170,10 @@ _WITHOUT_ERRORS = {
     **{
         name: _over_grid(
             POINT[name],
-            long_name=variables.share_of_trust(name.removesuffix(variables.TRUSTED)),
+            long_name=variables.share_of_trust(name.removesuffix(variables.TRUSTED_SUFFIX)),
             flags="",
         )
-        for name in TRUSTED
+        for name in TRUST_FLAGS
     },
     "target_met": _over_grid(
         POINT["target_met"],
@@ -154,25 +182,35 @@ _WITHOUT_ERRORS = {
     ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
-    **{name: _over_grid(POINT[name], over_seeds="") for name in (*OF_COOLING, *OF_STAGES)},
+    **{
+        name: _over_grid(POINT[name], over_seeds="") for name in (*COOLING_SERIES, *STAGE_VARIABLES)
+    },
+    **{
+        f"{name}_seed": _over_grid(
+            POINT[name],
+            long_name=f"{name} of each seed",
+            dims=(variables.GRID_PLACEHOLDER, "sample", "seed"),
+            when=(STAGES,),
+            over_seeds="",
+        )
+        for name in SERIES_OF_SEEDS
+    },
     "source": POINT["source"]._replace(when=(STAGES,)),
     "motion": POINT["motion"]._replace(when=(STAGES,)),
     "measured_for": _derived("length of the measured window, mean over seeds", variables.TIME),
     "n_seeds": _derived("number of seeds found", dtype="i8"),
-    "r": Variable("normal restitution", dims=("r",)),
-    "beta": Variable("tangential restitution", dims=("beta",)),
-    "seed": Variable("seed of the random generator", dims=("seed",), dtype="i8"),
+    **{name: variable._replace(dims=(name,)) for name, variable in POINT_COORDINATES.items()},
 }
 
 
 REDUCED: dict[str, Variable] = {}
-for name, about in _WITHOUT_ERRORS.items():
-    REDUCED[name] = about
+for name, variable in _WITHOUT_ERRORS.items():
+    REDUCED[name] = variable
     if name in POOLED:
-        REDUCED |= variables.errors_of(name, variables.POOLED, about)
+        REDUCED |= variables.errors_of(name, variables.POOLED, variable)
     elif name in SCATTERED:
-        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, about)
-    elif name in STAGED:
-        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, about)._replace(when=(STAGES,))
+        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, variable)
+    elif name in STAGE_VARIABLES_WITH_ERRORS:
+        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, variable)._replace(when=(STAGES,))
 
 variables.register("reduced", REDUCED)

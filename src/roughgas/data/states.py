@@ -1,9 +1,9 @@
-"""Particles in a dataset that any program may have written: read by the names of dimensions, in the
-order of coordinates, and in known units.
+"""Reads states of particles from datasets of any program: by the names of dimensions, in the order
+of coordinates, and with their units.
 
-A state has the variables of QUANTITIES, each along its dimensions in any order, and along
-`replica` if there are several states. The coordinates `axis` and `spin_axis`, where a dataset has
-them, are x, y and z, or numbers from 0. Labels of `particle` are numbers or names, all distinct.
+A state has the variables of QUANTITIES, each along its dimensions in any order, and along `replica`
+if there are several states. If a dataset has the coordinates `axis` and `spin_axis`, they are x, y
+and z, or numbers from 0. Labels of `particle` are distinct numbers or names.
 """
 
 import re
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError, shown
+from roughgas.base import InputError, short_repr
 from roughgas.data.netcdf import unit_of
 from roughgas.data.variables import LENGTH, SPEED, TIME
 
@@ -22,7 +22,7 @@ REPLICA = "replica"
 
 
 class Quantity(NamedTuple):
-    """A variable of a state."""
+    """Unit, such as "a/T", and dimensions, without the replica, of a variable of a state."""
 
     unit: str
     dims: tuple[str, ...]
@@ -39,13 +39,13 @@ QUANTITIES = {
     "time": Quantity(TIME, ()),
 }
 AXES = {1: "z", 2: "xy", 3: "xyz"}
-"""Names along an axis, by their number: disks have a spin along z alone."""
+"""Coordinates along an axis, by their number: disks have a spin along z alone."""
 MULTIPLE = re.compile(r"(?:([0-9.]+(?:[eE][+-]?\d+)?) *\*? *)?(.+)", re.DOTALL)
 SPELLINGS = {SPEED: {"a T^-1", "a T-1", "a*T^-1", "a T**-1"}}
 
 
 def check_type(dataset: Any) -> None:
-    """Raise InputError for anything but an xarray.Dataset."""
+    """Raise InputError unless `dataset` is an xarray.Dataset."""
     import xarray
 
     if not isinstance(dataset, xarray.Dataset):
@@ -54,11 +54,11 @@ def check_type(dataset: Any) -> None:
 
 
 def read_quantity(dataset: "xarray.Dataset", name: str, prefix: str = "") -> np.ndarray:
-    """Return a quantity of all states: floats (replicas, *dims), in the units of QUANTITIES.
+    """Return the variable `name` of all states: floats (replicas, *dims), in units of QUANTITIES.
 
-    `prefix` stands before the name of the variable. A variable without the dimension `replica`
-    holds for every replica. Raises InputError for other dimensions, coordinates and units, and for
-    values that are not finite numbers.
+    Its name in the dataset has the `prefix`, such as "last_". A variable without the dimension
+    `replica` applies to every replica. Raises InputError for other dimensions, coordinates and
+    units, and for values that are not finite numbers.
     """
     key, variable = f"initial.{name}", dataset[prefix + name]
     unit, dims = QUANTITIES[name]
@@ -67,21 +67,24 @@ def read_quantity(dataset: "xarray.Dataset", name: str, prefix: str = "") -> np.
     _check_dims(key, variable.dims, dims)
     if variable.dtype.kind not in "iuf":
         raise InputError(key, f"of type {variable.dtype}", "be real numbers")
-    several = [REPLICA] if REPLICA in variable.dims else []
-    values = np.asarray(variable.transpose(*several, *dims).values, float)
-    for place, dim in enumerate(dims, len(several)):
+    replica_dims = [REPLICA] if REPLICA in variable.dims else []
+    values = np.asarray(variable.transpose(*replica_dims, *dims).values, float)
+    for position, dim in enumerate(dims, len(replica_dims)):
         order = _order_along(dataset, dim)
-        values = values if order is None else np.take(values, order, place)
+        values = values if order is None else np.take(values, order, position)
     if not np.isfinite(values).all():
         raise InputError(key, "with numbers that are not finite", "be finite numbers")
     values = values * _multiple(key, str(unit_of(variable.attrs)), unit)
-    return values if several else np.repeat(values[None], dataset.sizes.get(REPLICA, 1), axis=0)
+    return (
+        values if replica_dims else np.repeat(values[None], dataset.sizes.get(REPLICA, 1), axis=0)
+    )
 
 
 def read_memory(dataset: "xarray.Dataset") -> list[bytes]:
-    """Return the kernel's memory of every replica; empty where the dataset has none.
+    """Return the memory of the kernel at the end of the run, as bytes for each replica.
 
-    Raises InputError where the dimensions are others than replica and byte.
+    The bytes are empty without `last_memory` in the dataset. Raises InputError for dimensions other
+    than replica and byte.
     """
     replicas = dataset.sizes.get(REPLICA, 1)
     if "last_memory" not in dataset:
@@ -94,6 +97,10 @@ def read_memory(dataset: "xarray.Dataset") -> list[bytes]:
 
 
 def _check_dims(key, dims, legal):
+    """Raise InputError, with this `key`, unless the dimensions are `legal`, in any order.
+
+    The dimension `replica` may come in addition.
+    """
     if "frame" in dims:
         advice = "have no frames: choose one, as by initial.isel(frame=-1)"
         raise InputError(key, dims, advice)
@@ -104,21 +111,32 @@ def _check_dims(key, dims, legal):
 
 
 def _order_along(dataset, dim):
-    """Return the indices that sort a dimension by its coordinate; None for a sorted one."""
+    """Return the indices that sort the dimension `dim` by its coordinate; None if it is sorted.
+
+    Raises InputError for illegal labels along it.
+    """
     if dim not in dataset.coords:
         return None
     key, labels = f"initial.{dim}", dataset[dim].values
     if dim == "particle":
         return _order_of_particles(key, labels)
     names = AXES.get(len(labels), "")
-    for known in (list(names), list(range(len(names)))):
-        if set(labels.tolist()) == {*known}:
-            return None if labels.tolist() == known else [labels.tolist().index(n) for n in known]
+    for legal_order in (list(names), list(range(len(names)))):
+        if set(labels.tolist()) == {*legal_order}:
+            return (
+                None
+                if labels.tolist() == legal_order
+                else [labels.tolist().index(n) for n in legal_order]
+            )
     listed = ", ".join(names) or "x, y and z"
-    raise InputError(key, shown(labels.tolist()), f"be {listed}, in any order")
+    raise InputError(key, short_repr(labels.tolist()), f"be {listed}, in any order")
 
 
 def _order_of_particles(key, labels):
+    """Return the indices that sort particles by their number; None if they are sorted, or named.
+
+    Raises InputError, with this `key`, for a label that occurs twice.
+    """
     if len({*labels.tolist()}) < len(labels):
         raise InputError(key, "with a label twice", "have another label for each particle")
     rising = labels.dtype.kind not in "iuf" or bool((labels[:-1] < labels[1:]).all())
@@ -126,16 +144,19 @@ def _order_of_particles(key, labels):
 
 
 def _multiple(key, text, unit):
-    """Return the multiple of `unit` in a text such as "2 a"; 1 for no text, and for "1"."""
+    """Return the factor before `unit` in units as `text`, such as 2 for "2 a"; 1 for "" and "1".
+
+    Raises InputError, with this `key`, for another unit, and for a factor that is not positive.
+    """
     if text in ("", "1"):
         return 1.0
-    multiple = MULTIPLE.fullmatch(text.strip())
-    number, base = multiple.groups() if multiple else ("0", text)
+    match = MULTIPLE.fullmatch(text.strip())
+    number, base = match.groups() if match else ("0", text)
     try:
         scale = float(number or 1.0)
     except ValueError:
         scale = 0.0
     if base not in {unit, *SPELLINGS.get(unit, ())} or not 0.0 < scale < np.inf:
         legal = f"be {unit}, or a multiple such as 2 {unit}" if unit != "1" else "be 1"
-        raise InputError(f"units of {key}", shown(text), legal)
+        raise InputError(f"units of {key}", short_repr(text), legal)
     return scale

@@ -1,10 +1,13 @@
-"""The registry of all variables: what each is, over which dimensions, and in which units.
+"""Registry of all variables of datasets: descriptions, dimensions and units.
 
-Writers, the tables of docs/data.md, and `roughgas show` read it. Points and reduced
-datasets are registered here, others by the module that makes them.
+Writers, the tables of docs/data.md, and `roughgas show` use it. Points and reduced datasets are
+registered in this package, other datasets by the module that makes them.
 
 Units: particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting
 time scale: there, times are counted in collisions per particle, energies in the initial E_trans.
+E_trans and E_rot are the energies per degree of freedom, R = E_rot/(E_rot + E_trans).
+
+Flags are integers: 1 is yes, 0 no, -1 not known.
 """
 
 from collections.abc import Collection, Mapping
@@ -12,6 +15,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from roughgas.base import Attributes, Record
 
 LENGTH = "a"
 TIME = "T"
@@ -21,43 +26,44 @@ RATE = "1/T"
 START = "initial E_trans"
 COOLING_UNITS = {TIME: "collisions per particle", ENERGY: START}
 CLOCKS = ("time", "collisions_per_particle")
-"""Coordinates that series run along, though their dimension has another name."""
-GRID = "grid"
-"""Stands for the dimensions of a reduced dataset, which are r, beta and whatever else is swept."""
+"""Coordinates of series, whose dimension has another name."""
+GRID_PLACEHOLDER = "grid"
+"""Placeholder for the dimensions of a reduced dataset: r, beta and any third axis."""
 
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with `target_stderr`"
 CONTACT = "where the contact-time model acts"
-KEPT = "with `keep_state`"
+STATE_KEPT = "with `keep_state`"
 OF_SPEED = "whose r depends on the speed"
 MIXTURE = "with `species`"
 AT_CONTACTS = "driven gas with `contact_averages`"
 STAGES = "gas through stages"
-LOGGED = "with `contact_log`"
+CONTACTS_LOGGED = "with `contact_log`"
+BED = "driven gas under gravity"
 
 
 class Variable(NamedTuple):
-    """What a variable is."""
+    """Description of a variable of datasets: its long name, units, dimensions and conditions."""
 
     long_name: str
     units: str = "1"  # "" for words
     dims: tuple[str, ...] = ()
     dtype: str = "f8"  # or "str"
-    when: tuple[str, ...] = ()  # which datasets have it; all by default
+    when: tuple[str, ...] = ()  # conditions for datasets to have it; by default all have it
     over_seeds: str = "mean"  # how a reduced dataset combines a scalar: mean, sum, or "" for not
-    flags: str = ""  # the meanings of 0, 1, ..., a word each; `unknown`, if it is there, is -1
+    flags: str = ""  # meanings of 0, 1, ..., in words; `unknown`, if present, is -1
     of_settings: bool = False  # in units of the settings even in a cooling gas
-    observable: str = ""  # which has watched it
+    observable: str = ""  # name of the observable that measured it
     comment: str = ""  # on its values
 
     def units_of(self, cooling: bool) -> str:
-        """Return its units in a cooling gas, or in a driven one."""
+        """Return the units of the variable in a cooling gas, or else in a driven gas."""
         counted = cooling and not self.of_settings
         return COOLING_UNITS.get(self.units, self.units) if counted else self.units
 
 
 class Array(NamedTuple):
-    """A variable with its values; the fields are those of an xarray.Variable."""
+    """A variable with its values; its fields are named as in xarray.Variable."""
 
     dims: tuple[str, ...]
     values: np.ndarray
@@ -65,87 +71,116 @@ class Array(NamedTuple):
 
 
 def _series(long_name: str, units: str = "1", *when: str) -> Variable:
+    """Return the description of a variable along `sample`: a value for each sampled instant."""
     return Variable(long_name, units, ("sample",), when=when)
 
 
-PARTNER, MOMENT = ("partner",), ("instant", "partner")
+PARTNER, INSTANT_AND_PARTNER = ("partner",), ("instant", "partner")
 
 
-def _of_spin(long_name: str, units: str = "1", *more: str) -> Variable:
-    return Variable(long_name, units, when=(*more, SPIN))
+def _of_spin(long_name: str, units: str = "1", *conditions: str) -> Variable:
+    """Return the description of a scalar variable that only gases with spinning particles have.
+
+    `conditions` are further conditions on the gas.
+    """
+    return Variable(long_name, units, when=(*conditions, SPIN))
 
 
 WITHIN, SCATTER = "within this file", "scatter over seeds"
 POOLED = f"{SCATTER} and error within them, pooled"
-"""Where a standard error comes from."""
+"""Origins of standard errors, as descriptions."""
 
 
-def error_of(name: str, origin: str, about: Variable) -> Variable:
-    """Return the standard error of a variable, from an origin such as WITHIN."""
-    said = f"standard error of {name}{'' if origin == WITHIN else ':'} {origin}"
-    return about._replace(long_name=said, dtype="f8", over_seeds="", flags="")
+def error_of(name: str, origin: str, variable: Variable) -> Variable:
+    """Return the description of the standard error of the variable `name`, described by `variable`.
+
+    `origin` is the origin of the error in words, such as WITHIN.
+    """
+    long_name = f"standard error of {name}{'' if origin == WITHIN else ':'} {origin}"
+    return variable._replace(long_name=long_name, dtype="f8", over_seeds="", flags="")
 
 
-def errors_of(name: str, origin: str, about: Variable) -> dict[str, Variable]:
-    """Return what says how sure a variable is: its error, and how well that is known."""
+def errors_of(name: str, origin: str, variable: Variable) -> dict[str, Variable]:
+    """Return descriptions of the standard error of `name`, its degrees of freedom and interval.
+
+    They are by name: <name>_stderr, <name>_dof and <name>_ci95, the half width of the 95 %
+    interval. `origin` is the origin of the error in words, such as WITHIN; `variable` describes
+    `name` itself.
+    """
     texts = {
         "dof": f"degrees of freedom that {name}_stderr is known with",
         "ci95": f"half width of the 95 % interval of {name}, by Student's t",
     }
-    error = error_of(name, origin, about)
+    error = error_of(name, origin, variable)
     return {f"{name}_stderr": error} | {
         f"{name}_{end}": error._replace(long_name=text) for end, text in texts.items()
     }
 
 
-TRUSTED = "_trusted"
-"""Ends the name of the flags that say whether the error of a variable is right."""
+TRUSTED_SUFFIX = "_trusted"
+"""Suffix of the flags for the verdict on a variable's error."""
 TRUST = "unknown untrusted trusted"
-"""The meanings of flags that say whether an error is right."""
+"""Meanings of these flags."""
 
 
-def trust_of(name: str, about: Variable) -> Variable:
-    """Return the flags that say whether the error of a variable is right."""
-    said = f"whether {name}_stderr is large enough; -1 where there is too little to tell"
-    return about._replace(long_name=said, units="1", dtype="i1", over_seeds="", flags=TRUST)
+def trust_of(name: str, variable: Variable) -> Variable:
+    """Return the description of the flags <name>_trusted: whether <name>_stderr is large enough.
+
+    `variable` describes <name>, whose dimensions they have.
+    """
+    long_name = f"whether {name}_stderr is large enough; -1 where there is too little to tell"
+    return variable._replace(long_name=long_name, units="1", dtype="i1", over_seeds="", flags=TRUST)
 
 
 def share_of_trust(name: str) -> str:
-    """Return the description of the share of seeds whose error of a variable is right."""
+    """Return the long name of the share of seeds whose error of the variable `name` is trusted."""
     error = f"{name}_stderr"
     return f"share of seeds whose {error} is large enough; -1 where most have too little to tell"
 
 
-def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
-    """Return an average over the collisions of pairs, with its error."""
-    about = Variable(long_name, when=(AT_CONTACTS,))
-    errors = errors_of(name, WITHIN, about)
-    return {name: about, **errors, f"{name}_trusted": trust_of(name, about)}
+def _with_errors(name: str, long_name: str, when: str) -> dict[str, Variable]:
+    """Return descriptions of a ratio of averages and of its errors, for gases of a condition.
+
+    They are by name: <name>, its errors (`errors_of`) and <name>_trusted; `when` is the condition.
+    """
+    variable = Variable(long_name, when=(when,))
+    errors = errors_of(name, WITHIN, variable)
+    return {name: variable, **errors, f"{name}_trusted": trust_of(name, variable)}
 
 
-NAMES = {  # in all kinds of datasets
+SPECIES_VARIABLES = {  # in all kinds of datasets
     "species": Variable("name of the species", "", ("species",), "str", (MIXTURE,), over_seeds=""),
     "species_particles": Variable("particles of a species", "1", ("species",), "i8", (MIXTURE,)),
 }
 
 
-def _of_each(
-    axis: str, having: str, name: str, units: str, dims: tuple, *when: str, dtype: str = "f8"
+def _per_element(
+    axis: str, condition: str, name: str, units: str, dims: tuple, *when: str, dtype: str = "f8"
 ) -> Variable:
-    return Variable(name, units, (axis, *dims), dtype, (having, *when), of_settings=True)
+    """Return the description of a variable along the dimension `axis`, for gases of a `condition`.
+
+    `name` is its long name, `dims` its further dimensions, `when` further conditions.
+    """
+    return Variable(name, units, (axis, *dims), dtype, (condition, *when), of_settings=True)
 
 
-_kept, _logged = partial(_of_each, "replica", KEPT), partial(_of_each, "contact", LOGGED)
+_final_state, _contact_log_entry = (
+    partial(_per_element, "replica", STATE_KEPT),
+    partial(_per_element, "contact", CONTACTS_LOGGED),
+)
 
 
 def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict[str, Variable]:
-    """Return a mean of each species, with its error and, but for R, its series."""
-    about = Variable(f"{long_name} of a species", units, ("species",), when=(MIXTURE, *when))
-    found = {name: about, f"{name}_stderr": error_of(name, WITHIN, about)}
-    found[f"{name}_trusted"] = trust_of(name, about)
+    """Return descriptions of a mean of each species, its error and, for energies, its series.
+
+    They are by name: <name>, <name>_stderr, <name>_trusted and <name>_series.
+    """
+    variable = Variable(f"{long_name} of a species", units, ("species",), when=(MIXTURE, *when))
+    variables = {name: variable, f"{name}_stderr": error_of(name, WITHIN, variable)}
+    variables[f"{name}_trusted"] = trust_of(name, variable)
     if units == ENERGY:
-        found[f"{name}_series"] = about._replace(dims=("species", "sample"))
-    return found
+        variables[f"{name}_series"] = variable._replace(dims=("species", "sample"))
+    return variables
 
 
 _IN_ROTATION = _of_spin("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)")
@@ -154,6 +189,13 @@ _ROTATION = _of_spin("rotational energy per degree of freedom", ENERGY)
 _INPUT = "energy per particle that a source has put in since the start (negative: taken out)"
 _GAIN = "change of the energy per particle, kinetic and potential, since the start"
 
+
+POINT_COORDINATES = {
+    "r": Variable("normal restitution", over_seeds=""),
+    "beta": Variable("tangential restitution", over_seeds=""),
+    "seed": Variable("seed of the random generator", dtype="i8", over_seeds=""),
+}
+"""Coordinates of a point, which are the dimensions of a reduced dataset."""
 
 POINT = {
     "R": _IN_ROTATION,
@@ -170,13 +212,18 @@ POINT = {
         "1",
         "momentum conserved",
     ),
-    **_at_contacts("R_collisional", "share of rotation in the energy, averaged over collisions"),
-    **_at_contacts(
-        "contact_correlation", "<v_t.v_r>/sqrt(<v_t^2> <v_r^2>), averaged over collisions"
+    **_with_errors(
+        "R_collisional", "share of rotation in the energy, averaged over collisions", AT_CONTACTS
+    ),
+    **_with_errors(
+        "contact_correlation",
+        "<v_t.v_r>/sqrt(<v_t^2> <v_r^2>), averaged over collisions",
+        AT_CONTACTS,
     ),
     "E_trans": _TRANSLATION,
     "E_trans_stderr": error_of("E_trans", WITHIN, _TRANSLATION),
     "E_trans_trusted": trust_of("E_trans", _TRANSLATION),
+    **_with_errors("vertical_share", "share of vertical motion in the translational energy", BED),
     "E_rot": _ROTATION,
     "E_rot_stderr": error_of("E_rot", WITHIN, _ROTATION),
     "E_rot_trusted": trust_of("E_rot", _ROTATION),
@@ -235,7 +282,7 @@ POINT = {
         "share of rotation in the energy that all drives have put in", "1", DRIVEN
     ),
     "energy_gain": Variable(_GAIN, ENERGY, ("motion",)),
-    **NAMES,
+    **SPECIES_VARIABLES,
     **_of_species("E_trans_species", "translational energy per degree of freedom", ENERGY),
     **_of_species("E_rot_species", "rotational energy per degree of freedom", ENERGY, SPIN),
     **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
@@ -265,105 +312,147 @@ POINT = {
         ("stage", "motion"),
         when=(STAGES,),
     ),
-    "last_time": _kept("time since the start at which it ends", TIME, ()),
-    "last_position": _kept("position of a particle then", LENGTH, ("particle", "axis")),
-    "last_velocity": _kept("velocity then of the image in the box", SPEED, ("particle", "axis")),
-    "last_spin": _kept("spin a w of a particle then", SPEED, ("particle", "spin_axis"), SPIN),
-    "last_radius": _kept("radius of a particle", LENGTH, ("particle",), MIXTURE),
-    "last_species_of": _kept("number of its species, from 0", "1", ("particle",), MIXTURE),
-    "last_memory": _kept(
+    "last_time": _final_state("time since the start at which it ends", TIME, ()),
+    "last_position": _final_state("position of a particle then", LENGTH, ("particle", "axis")),
+    "last_velocity": _final_state(
+        "velocity then of the image in the box", SPEED, ("particle", "axis")
+    ),
+    "last_spin": _final_state(
+        "spin a w of a particle then", SPEED, ("particle", "spin_axis"), SPIN
+    ),
+    "last_radius": _final_state("radius of a particle", LENGTH, ("particle",), MIXTURE),
+    "last_species_of": _final_state("number of its species, from 0", "1", ("particle",), MIXTURE),
+    "last_memory": _final_state(
         "the kernel's arrays then, as they lie in memory", "1", ("byte",), dtype="u1"
     ),
     "contacts_lost": Variable(
-        "contacts before the first one that is logged", dtype="i8", when=(LOGGED,), over_seeds=""
+        "contacts before the first one that is logged",
+        dtype="i8",
+        when=(CONTACTS_LOGGED,),
+        over_seeds="",
     ),
-    "instant": Variable("before or after a contact", "", ("instant",), "str", (LOGGED,)),
-    "logged_time": _logged("time of a contact since the start", TIME, ()),
-    "logged_partner": _logged(
+    "instant": Variable("before or after a contact", "", ("instant",), "str", (CONTACTS_LOGGED,)),
+    "logged_time": _contact_log_entry("time of a contact since the start", TIME, ()),
+    "logged_partner": _contact_log_entry(
         "number of a partner from 0, as it is at the start; -1 is a floor or a wall",
         "1",
         PARTNER,
         dtype="i4",
     ),
-    "logged_normal": _logged("unit vector from the second partner to the first", "1", ("axis",)),
-    "logged_position": _logged("position of the first partner", LENGTH, ("axis",)),
-    "logged_velocity": _logged(
+    "logged_normal": _contact_log_entry(
+        "unit vector from the second partner to the first", "1", ("axis",)
+    ),
+    "logged_position": _contact_log_entry("position of the first partner", LENGTH, ("axis",)),
+    "logged_velocity": _contact_log_entry(
         "velocity of a partner, of the second as the image that the first touches",
         SPEED,
-        (*MOMENT, "axis"),
+        (*INSTANT_AND_PARTNER, "axis"),
     ),
-    "logged_spin": _logged("spin a w of a partner", SPEED, (*MOMENT, "spin_axis"), SPIN),
-    "logged_species": _logged(
+    "logged_spin": _contact_log_entry(
+        "spin a w of a partner", SPEED, (*INSTANT_AND_PARTNER, "spin_axis"), SPIN
+    ),
+    "logged_species": _contact_log_entry(
         "number of a partner's species, from 0; -1 is a wall", "1", PARTNER, MIXTURE, dtype="i4"
     ),
-    "logged_radius": _logged("radius of a partner", LENGTH, PARTNER, MIXTURE),
-    "logged_mass": _logged("mass of a partner", "m", PARTNER, MIXTURE),
-    "logged_inertia": _logged(
+    "logged_radius": _contact_log_entry("radius of a partner", LENGTH, PARTNER, MIXTURE),
+    "logged_mass": _contact_log_entry("mass of a partner", "m", PARTNER, MIXTURE),
+    "logged_inertia": _contact_log_entry(
         "moment of inertia of a partner over its m a^2", "1", PARTNER, MIXTURE
     ),
+    **POINT_COORDINATES,
 }
 
 REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT}
-"""All variables by name, for each kind of dataset."""
+"""All variables by name, for each kind of dataset: point, reduced, trajectory, ..."""
 
 
 def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Variable]:
-    """Make the variables of a kind of dataset known, and return them."""
+    """Register the variables of a `kind` of dataset, such as "trajectory", and return them."""
     REGISTRY[kind] = variables
     return variables
 
 
+def third_axis(attributes: Attributes) -> str | None:
+    """Return the name of the third axis of a dataset, from its attributes; None without it.
+
+    It is the swept setting beside r, beta and seed, without its effect: `inertia` for spin.inertia.
+    """
+    return attributes["swept"].rpartition(".")[2] if "swept" in attributes else None
+
+
+def swept_axis(attributes: Attributes) -> dict[str, Variable]:
+    """Return the description of the third axis of a dataset, by its name; {} without it.
+
+    The third axis is the swept setting beside r, beta and seed. `attributes` are the dataset's,
+    with `swept` and `swept_value`.
+    """
+    name = third_axis(attributes)
+    if name is None or "swept_value" not in attributes:
+        return {}
+    units, dtype = ("", "str") if isinstance(attributes["swept_value"], str) else ("1", "f8")
+    return {name: Variable(f"swept setting: {attributes['swept']}", units, dtype=dtype)}
+
+
 def described(
     kind: str | Mapping[str, Variable],
-    values: Mapping[str, Any],
+    values: Record,
     cooling: bool = False,
-    grid: tuple[str, ...] = (GRID,),
+    grid: tuple[str, ...] = (GRID_PLACEHOLDER,),
     observed: Mapping[str, Variable] | None = None,
 ) -> dict[str, Array]:
-    """Return `values` with dimensions and attributes, in the order in which they are registered as
-    those of a `kind` of dataset, or given.
+    """Return `values` with dimensions and attributes, in the order of the registered variables.
 
-    Attributes are `long_name`, `units`, and those of flags. `grid` are the dimensions that GRID
-    stands for; `observed` describes variables of observables, which come last. Raises ValueError
-    for unregistered variables, and for shapes that disagree.
+    `kind` is a kind of dataset in the registry, or a mapping of descriptions by name. Attributes
+    are `long_name`, `units` (of a `cooling` gas or not), and the meanings of flags. `grid` replaces
+    GRID_PLACEHOLDER; `observed` describes variables of observables, which come last. Raises
+    ValueError for unregistered variables and for inconsistent shapes.
     """
     registered = REGISTRY[kind] if isinstance(kind, str) else kind
-    known = {**registered, **(observed or {})}
-    what = kind if isinstance(kind, str) else "dataset"
-    refuse(f"unknown variables of a {what}", set(values) - set(known))
-    found = {
-        name: _array(about, values[name], cooling, grid)
-        for name, about in known.items()
+    descriptions = {**registered, **(observed or {})}
+    kind_name = kind if isinstance(kind, str) else "dataset"
+    raise_if_any(f"unknown variables of a {kind_name}", set(values) - set(descriptions))
+    arrays = {
+        name: _array(variable, values[name], cooling, grid)
+        for name, variable in descriptions.items()
         if name in values
     }
     lengths: dict[str, int] = {}
-    for name, (dims, array, _) in found.items():
+    for name, (dims, array, _) in arrays.items():
         if array.ndim != len(dims):
             raise ValueError(f"{name} has shape {array.shape}, but dimensions {dims}")
         for dim, length in zip(dims, array.shape, strict=True):
             if lengths.setdefault(dim, length) != length:
                 raise ValueError(f"{name} has {length} values along {dim}, others {lengths[dim]}")
-    return found
+    return arrays
 
 
-def refuse(what: str, names: Collection[str]) -> None:
-    """Raise ValueError if there are any `names`."""
+def raise_if_any(problem: str, names: Collection[str]) -> None:
+    """Raise ValueError, with `problem` and `names` in its text, unless `names` is empty."""
     if names:
-        raise ValueError(f"{what}: {', '.join(sorted(names))}")
+        raise ValueError(f"{problem}: {', '.join(sorted(names))}")
 
 
-def _array(about: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -> Array:
-    attributes: dict[str, Any] = {"long_name": about.long_name}
-    if about.units:
-        attributes["units"] = about.units_of(cooling)
-    if about.observable:
-        attributes["observable"] = about.observable
-    if about.comment:
-        attributes["comment"] = about.comment
-    if about.flags:
-        words = about.flags.split()
-        meanings = np.arange(len(words), dtype=about.dtype) - words.count("unknown")
-        attributes |= {"flag_values": meanings.astype(about.dtype), "flag_meanings": about.flags}
-    dims = tuple(one for dim in about.dims for one in (grid if dim == GRID else (dim,)))
-    dtype = object if about.dtype == "str" else about.dtype
+def _array(variable: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -> Array:
+    """Return values as an array of their type, with the dimensions and attributes of `variable`.
+
+    `grid` replaces GRID_PLACEHOLDER in the dimensions; units are of a `cooling` gas or not.
+    """
+    attributes: dict[str, Any] = {"long_name": variable.long_name}
+    if variable.units:
+        attributes["units"] = variable.units_of(cooling)
+    if variable.observable:
+        attributes["observable"] = variable.observable
+    if variable.comment:
+        attributes["comment"] = variable.comment
+    if variable.flags:
+        words = variable.flags.split()
+        meanings = np.arange(len(words), dtype=variable.dtype) - words.count("unknown")
+        attributes |= {
+            "flag_values": meanings.astype(variable.dtype),
+            "flag_meanings": variable.flags,
+        }
+    dims = tuple(
+        name for dim in variable.dims for name in (grid if dim == GRID_PLACEHOLDER else (dim,))
+    )
+    dtype = object if variable.dtype == "str" else variable.dtype
     return Array(dims, np.asarray(values, dtype), attributes)

@@ -1,47 +1,48 @@
-"""Contacts: the spins that they change, Coulomb friction, and sums by effects that only look.
+"""Effects in contacts: spins, Coulomb friction, and passive effects that accumulate sums.
 
 Friction is O. R. Walton's rule with three parameters (r, beta_0, mu), in Particulate Two-Phase Flow
 (1993), p. 884: a contact sticks, with the roughness beta_0, unless its tangential impulse would
-then exceed mu times the normal one, and slides with just that impulse if it would:
+then exceed mu times the normal impulse, and otherwise slides with exactly that tangential impulse:
 
     beta = min{beta_0, -1 + mu (1 + r) (1 + 1/q) |g_n|/|g_t|}
 
-Where particles differ, 1 + 1/q is what an impulse along the surfaces moves them past each other by,
-over what one along the normal moves the centres by; and mu is that of the pair.
+Where particles differ, 1 + 1/q is replaced by the change of the slip velocity per tangential
+impulse, over the change of the normal velocity per normal impulse; mu belongs to the pair.
 
-Averages over collisions are what the theory is about. McNamara & Luding (1998) average over the
-collisions of pairs: v_t is the tangential part of the relative velocity of the centres, v_r = -a
-(w1 + w2) x n that of the surfaces due to both spins (Eq. collrule). Where nothing but contacts
-changes the rotational energy of a steady state, their squares and their product are tied together
-(theory.correlated_ratio). Where particles differ, v_t is weighted with the root of twice the
-reduced mass of the pair, v_r with that of twice its reduced m q: if all species had one temperature
-of translation and one of rotation, the mean squares would be 2 (D-1) times these. Then q = 1
-belongs to the sums.
+Theory is formulated with averages over collisions. McNamara & Luding (1998) average over the
+collisions of pairs: v_t is the tangential part of the relative velocity of the centres, and
+v_r = -a (w1 + w2) x n the relative velocity of the surfaces due to both spins (Eq. collrule). If
+only contacts change the rotational energy of a steady state, their squares and their product are
+related (theory.correlated_ratio). Where particles differ, v_t is weighted with the square root of
+twice the reduced mass of the pair, v_r with the square root of twice its reduced m q: if all
+species had the same translational and the same rotational temperature, the mean squares would be
+2 (D-1) times these. With these weights the sums are to be used with q = 1.
 
-Collisional stress, for the observable `stress`: in a contact the momentum -push passes to particle
-i, and is carried at once from the centre of j to that of i, over 2a where particles are alike.
-Summed over contacts, per time and volume, that is the collisional part of the pressure tensor (the
+Collisional stress, for the observable `stress`: in a contact the momentum -impulse passes to
+particle i, from the centre of j to the centre of i, at a distance of 2a where particles are alike.
+Summed over contacts, per time and volume, this is the collisional part of the pressure tensor (the
 virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
 
-Collisional heat flux, for the observables `heat_flux` and `flux_autocorrelation`: as far is carried
-the energy that passes from j to i, half of what i gains and j loses. Where particles are alike that
-is -push.(v_i + v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
+Collisional heat flux, for the observables `heat_flux` and `flux_autocorrelation`: energy passes
+over the same distance from j to i, namely half the sum of the gain of i and the loss of j. Where
+particles are alike it is -impulse.(v_i + v_j)/2 + (n x impulse).(w_i - w_j)/2, with the velocities
+and spins after the contact.
 
-Contacts are counted for the observable `contacts`, and the energy summed up that they take from
-translation and rotation together. Of a mixture, each pair of species has sums of its own of all of
-these.
+The observable `contacts` needs the number of contacts, and the energy that they take from
+translation and rotation together. In a mixture all these sums are kept for each pair of species.
 
-The log of contacts keeps the last ones: a row of State.log for each, which the next one but `most`
-overwrites. Contacts with floors and walls are there, too, unless these are thermal.
+The log of contacts is a ring buffer of the last `most` contacts, a row of State.log for each. It
+includes contacts with floors and walls that are not thermal.
 """
 
 import math
 from itertools import product
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from roughgas.base import NeedsError
+from roughgas.base.fields import Settings, number, whole
 from roughgas.compiling.jit import jit
-from roughgas.effects.settings import Number, Whole, register
+from roughgas.effects.settings import register
 from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,
@@ -52,12 +53,16 @@ from roughgas.kernel.mathematics import (
     subtract,
     write,
 )
-from roughgas.kernel.particles import pair_of, reach_of, spin_mass_of, spin_of
+from roughgas.kernel.particles import contact_distance, pair_of, spin_mass_of, spin_of
 from roughgas.kernel.state import BASE, EXPONENT, NOBODY, ORIGIN
 
-SPIN_SETTINGS = {
-    "inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "[1e-06, 1]")
-}
+
+class SpinSettings(Settings, frozen=True, kw_only=True):
+    """Settings of `spin`."""
+
+    inertia: Annotated[
+        float, number("[1e-06, 1]", "q = I/(m a^2), 1/2 for disks and 2/5 for spheres.")
+    ]
 
 
 class Spin(NamedTuple):
@@ -66,10 +71,13 @@ class Spin(NamedTuple):
     inertia: float
 
 
-register(Spin, SPIN_SETTINGS)
+register(Spin, SpinSettings)
 
 
-FRICTION_SETTINGS = {"mu": Number("Coefficient of friction; 0 is a smooth gas.", "[0, inf)")}
+class FrictionSettings(Settings, frozen=True, kw_only=True):
+    """Settings of `friction`."""
+
+    mu: Annotated[float, number("[0, inf)", "Coefficient of friction; 0 is a smooth gas.")]
 
 
 class Friction(NamedTuple):
@@ -79,42 +87,56 @@ class Friction(NamedTuple):
     inertia: float  # q of the particles
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the effect; raise InputError where nothing spins."""
-        if "spin" not in around.effects:
+    def from_settings(cls, settings, context):
+        """Return the effect from FrictionSettings and a SceneContext.
+
+        Raises InputError where nothing spins.
+        """
+        if "spin" not in context.effects:
             raise NeedsError("effects.friction", "spin")
-        inertia = around.effects["spin"]["inertia"]
-        return cls(**settings, inertia=float(inertia))
+        return cls(settings.mu, context.effects["spin"].inertia)
 
 
 @jit
-def roughness(friction, index, beta, r, speed, slip, pair):
+def roughness(friction, account, beta, r, speed, slip_velocity, pair):
+    """Return beta of a contact with Coulomb friction: the given beta, reduced where it slides.
+
+    Hook `roughness` (kernel.hooks), which does without the account. `beta` is the roughness of a
+    contact that sticks, r the normal restitution; `speed` is the normal component of the relative
+    velocity, `slip_velocity` its tangential part at the surfaces, `pair` the particles.Pair.
+    """
     mu = friction.mu if pair.mu is None else pair.mu
-    ease = pair.mass * pair.inertia / pair.bulk + pair.mass / pair.bulk
-    most = mu * (1.0 + r) * ease * abs(speed)
-    sliding = math.sqrt(dot(slip, slip))
-    return beta if (1.0 + beta) * sliding <= most else most / sliding - 1.0
+    mobility_ratio = (
+        pair.mass * pair.inertia / pair.reduced_spin_mass + pair.mass / pair.reduced_spin_mass
+    )
+    max_change = mu * (1.0 + r) * mobility_ratio * abs(speed)
+    slip_speed = math.sqrt(dot(slip_velocity, slip_velocity))
+    return beta if (1.0 + beta) * slip_speed <= max_change else max_change / slip_speed - 1.0
 
 
-register(Friction, FRICTION_SETTINGS, roughness=roughness)
+register(Friction, FrictionSettings, roughness=roughness)
 
 
 SQUARES = {"v_t^2": 2, "v_r^2": 2, "v_t.v_r": 2}
 
 
 class ContactAverages(NamedTuple):
-    """Measures R averaged over collisions, from sums over all contacts of pairs."""
+    """Accumulates averages over collisions of pairs, for R averaged over collisions."""
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the effect; raise InputError where nothing spins."""
-        if "spin" not in around.effects:
+    def from_settings(cls, settings, context):
+        """Return the effect for a SceneContext; raise InputError where nothing spins."""
+        if "spin" not in context.effects:
             raise NeedsError("effects.contact_averages", "spin")
         return cls()
 
 
 @jit
-def observe_squares(averages, index, state, contact):
+def observe_squares(averages, account, state, contact):
+    """Add the terms v_t^2, v_r^2 and v_t.v_r of a Contact to the running sums.
+
+    Hook `observe_contact` (kernel.hooks), which does without the account.
+    """
     sums, n, v = state.sums.contact_averages, contact.n, contact.v
     v_t = add_scaled(v, n, -dot(v, n))
     minus_v_r = spin_cross(contact.w, n)
@@ -126,36 +148,43 @@ def observe_squares(averages, index, state, contact):
 
 @jit
 def _weights(bodies, i, j):
+    """Return the weights of v_t^2 and v_r^2 for a pair: twice the reduced m and m q."""
     if bodies is None:
         return 1.0, 1.0
     pair = pair_of(bodies, None, i, j)
-    return pair.mass, pair.bulk
+    return pair.mass, pair.reduced_spin_mass
 
 
-register(ContactAverages, {}, observe_contact=observe_squares, sums=SQUARES)
+register(ContactAverages, Settings, observe_contact=observe_squares, sums=SQUARES)
 
 
 def columns_of_pairs(names, kinds: int) -> list[str]:
-    """Return the columns of sums over contacts: of so many species, those of each pair in turn,
-    species k with each species, from k = 0 on."""
+    """Return the column names of sums over contacts, for each ordered pair of species in turn.
+
+    `names` are the sums of one pair, `kinds` is the number of species; just `names` for a single
+    species.
+    """
     pairs = product(range(kinds), repeat=2)
-    return (
-        [f"{name}[{k},{other}]" for k, other in pairs for name in names] if kinds > 1 else [*names]
-    )
+    return [f"{name}[{k},{m}]" for k, m in pairs for name in names] if kinds > 1 else [*names]
 
 
-def _of_pairs(powers):
-    """Return what `sums` of a hook is, for these columns of each pair of species."""
+def _sums_of_pairs(powers):
+    """Return the hook `sums` for columns that are repeated for each ordered pair of species.
 
-    def of(effects):
+    `powers` has the power of velocity in the unit of each column, by its name.
+    """
+
+    def sums(effects):
+        """Return the power of velocity of each column, by its name, for the scene's species."""
         kinds = 1 if effects.species is None else effects.species.kinds
         return {name: powers[name.partition("[")[0]] for name in columns_of_pairs(powers, kinds)}
 
-    return of
+    return sums
 
 
 @jit
 def _number_of_pair(bodies, i, j):
+    """Return the number of the ordered pair of the species of i and j, as in columns_of_pairs."""
     if bodies is None:
         return 0
     return bodies.pairs.shape[0] * bodies.species[i] + bodies.species[j]
@@ -163,24 +192,29 @@ def _number_of_pair(bodies, i, j):
 
 AXES = "xyz"
 STRESSES = {f"J_{k} s_{along}": 1 for k, along in product(AXES, AXES)}
-"""Momentum times distance: its component k, carried along an axis."""
+"""Momentum times distance: component k of the momentum, carried along an axis."""
 
 
 class ContactStress(NamedTuple):
-    """Measures the collisional stress, from sums over all contacts of pairs."""
+    """Accumulates the collisional stress, over all contacts of pairs."""
 
 
 @jit
-def observe_stress(stress, index, state, contact):
-    sums, n, push = state.sums.contact_stress, contact.n, contact.push
-    far = reach_of(state.bodies, contact.i, contact.j)
+def observe_stress(stress, account, state, contact):
+    """Add the momentum times distance that a Contact transfers to the running sums.
+
+    Their unit is m a^2/T, in current units of velocity. Hook `observe_contact` (kernel.hooks),
+    which does without the account.
+    """
+    sums, n, impulse = state.sums.contact_stress, contact.n, contact.impulse
+    distance = contact_distance(state.bodies, contact.i, contact.j)
     first = 9 * _number_of_pair(state.bodies, contact.i, contact.j)
     for k in range(len(n)):
         for along in range(len(n)):
-            sums[0, first + 3 * k + along] -= push[k] * far * n[along]
+            sums[0, first + 3 * k + along] -= impulse[k] * distance * n[along]
 
 
-register(ContactStress, {}, observe_contact=observe_stress, sums=_of_pairs(STRESSES))
+register(ContactStress, Settings, observe_contact=observe_stress, sums=_sums_of_pairs(STRESSES))
 
 
 HEAT = {f"E s_{along}": 2 for along in AXES}
@@ -188,75 +222,104 @@ HEAT = {f"E s_{along}": 2 for along in AXES}
 
 
 class ContactHeat(NamedTuple):
-    """Measures the collisional heat flux, from sums over all contacts of pairs."""
+    """Accumulates the collisional heat flux, over all contacts of pairs."""
 
 
 @jit
-def observe_heat(heat, index, state, contact):
+def observe_heat(heat, account, state, contact):
+    """Add the energy times distance that a Contact transfers to the running sums.
+
+    Their unit is m a^3/T^2, in current units of velocity. Hook `observe_contact` (kernel.hooks),
+    which does without the account.
+    """
     sums, bodies, along = state.sums.contact_heat, state.bodies, len(contact.n)
-    i, j, n, push = contact.i, contact.j, contact.n, contact.push
-    both = add_scaled(read(state.trajectory, i, along, n), read(state.trajectory, j, along, n), 1.0)
-    passed = -0.5 * dot(push, both)
+    i, j, n, impulse = contact.i, contact.j, contact.n, contact.impulse
+    velocity_sum = add_scaled(
+        read(state.trajectory, i, along, n), read(state.trajectory, j, along, n), 1.0
+    )
+    energy = -0.5 * dot(impulse, velocity_sum)
     if state.spin is not None:
-        turn = cross_to_spin(n, push)
-        passed += 0.5 * dot(turn, subtract(spin_of(state.spin, n, i), spin_of(state.spin, n, j)))
+        turn = cross_to_spin(n, impulse)
+        energy += 0.5 * dot(turn, subtract(spin_of(state.spin, n, i), spin_of(state.spin, n, j)))
     if bodies is not None:
-        passed -= 0.25 * dot(push, push) * (1.0 / bodies.mass[i] - 1.0 / bodies.mass[j])
+        energy -= 0.25 * dot(impulse, impulse) * (1.0 / bodies.mass[i] - 1.0 / bodies.mass[j])
     if bodies is not None and state.spin is not None:
-        one, other = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
-        passed -= 0.25 * dot(turn, turn) * (1.0 / one - 1.0 / other)
-    far, first = reach_of(bodies, i, j), 3 * _number_of_pair(bodies, i, j)
+        s_i, s_j = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
+        energy -= 0.25 * dot(turn, turn) * (1.0 / s_i - 1.0 / s_j)
+    distance, first = contact_distance(bodies, i, j), 3 * _number_of_pair(bodies, i, j)
     for k in range(len(n)):
-        sums[0, first + k] += passed * far * n[k]
+        sums[0, first + k] += energy * distance * n[k]
 
 
-register(ContactHeat, {}, observe_contact=observe_heat, sums=_of_pairs(HEAT))
+register(ContactHeat, Settings, observe_contact=observe_heat, sums=_sums_of_pairs(HEAT))
 
 
 COUNTS = {"contacts": 0, "loss": 2}
 
 
 class ContactPairs(NamedTuple):
-    """Counts the contacts of each pair of species, and sums up the energy that they take."""
+    """Counts the contacts of each pair of species, and accumulates the energy lost in them."""
 
     inertia: float  # q of the particles, 0 where they do not spin
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the effect."""
-        return cls(float(around.effects.get("spin", {}).get("inertia", 0.0)))
+    def from_settings(cls, settings, context):
+        """Return the effect for a SceneContext, with q of the particles.
+
+        q is 0 where they do not spin.
+        """
+        spin = context.effects.get("spin")
+        return cls(0.0 if spin is None else spin.inertia)
 
 
 @jit
-def observe_pairs(effect, index, state, contact):
-    i, j, push, bodies = contact.i, contact.j, contact.push, state.bodies
-    lost = dot(push, contact.v) - dot(push, push) / pair_of(bodies, None, i, j).mass
+def observe_pairs(effect, account, state, contact):
+    """Count a Contact for its pair of species, and add the energy lost in it to the running sums.
+
+    Hook `observe_contact` (kernel.hooks), which does without the account.
+    """
+    i, j, impulse, bodies = contact.i, contact.j, contact.impulse, state.bodies
+    loss = dot(impulse, contact.v) - dot(impulse, impulse) / pair_of(bodies, None, i, j).mass
     if state.spin is not None:
         w_i, w_j = contact.spins
-        lost -= _gained(effect, state, i, w_i) + _gained(effect, state, j, w_j)
+        loss -= _rotational_gain(effect, state, i, w_i) + _rotational_gain(effect, state, j, w_j)
     sums, first = state.sums.contact_pairs, 2 * _number_of_pair(bodies, i, j)
     sums[0, first] += 1.0
-    sums[0, first + 1] += lost
+    sums[0, first + 1] += loss
 
 
 @jit
-def _gained(effect, state, i, before):
-    gained = dot(read(state.spin, i, 0, before), read(state.spin, i, 0, before))
-    return 0.5 * spin_mass_of(state.bodies, effect, i) * (gained - dot(before, before))
+def _rotational_gain(effect, state, i, before):
+    """Return the rotational energy gained by particle i since its spin was `before`."""
+    square = dot(read(state.spin, i, 0, before), read(state.spin, i, 0, before))
+    return 0.5 * spin_mass_of(state.bodies, effect, i) * (square - dot(before, before))
 
 
-register(ContactPairs, {}, observe_contact=observe_pairs, sums=_of_pairs(COUNTS))
+register(ContactPairs, Settings, observe_contact=observe_pairs, sums=_sums_of_pairs(COUNTS))
+
+
+LoggedContacts = Annotated[int, whole(1, 1_000_000, "Number of last contacts that are kept.")]
+
+
+class ContactLogSettings(Settings, frozen=True, kw_only=True):
+    """Settings of `contact_log`."""
+
+    most: LoggedContacts = 10_000
 
 
 class ContactLog(NamedTuple):
-    """Keeps the last contacts: time, partners, normal, velocities and spins before and after."""
+    """Logs the last contacts: time, partners, normal, velocities and spins before and after."""
 
-    most: int
-    on: bool = True  # not while a gas is thermalised
+    most: int  # contacts in the log
+    on: bool = True  # False while a gas is thermalised
 
 
 @jit
-def log_contact(effect, index, state, contact):
+def log_contact(effect, account, state, contact):
+    """Write a Contact to the next row of the log, in units of a and T, unless the log is off.
+
+    Hooks `observe_contact` and `observe_wall` (kernel.hooks), which do without the account.
+    """
     if not effect.on:
         return
     log, i, j, n = state.log, contact.i, contact.j, contact.n
@@ -269,28 +332,28 @@ def log_contact(effect, index, state, contact):
     rows[row, 2] = NOBODY if j == NOBODY else state.label[j]
     write(rows, row, 3, n)
     write(rows, row, 3 + dimension, read(trajectory, i, 0, n))
-    # the image of j that i touches, if it is another than the one in the box
+    # relative to the image of j in the box, the image that i touches moves with `image_velocity`
     before_i, before_j = contact.velocities
-    image = subtract(subtract(before_i, before_j), contact.v)
+    image_velocity = subtract(subtract(before_i, before_j), contact.v)
     after_j = before_j if j == NOBODY else read(trajectory, j, dimension, n)
     write(rows, row, 3 + 2 * dimension, scale(before_i, unit))
-    write(rows, row, 3 + 3 * dimension, scale(add_scaled(before_j, image, 1.0), unit))
+    write(rows, row, 3 + 3 * dimension, scale(add_scaled(before_j, image_velocity, 1.0), unit))
     write(rows, row, 3 + 4 * dimension, scale(read(trajectory, i, dimension, n), unit))
-    write(rows, row, 3 + 5 * dimension, scale(add_scaled(after_j, image, 1.0), unit))
+    write(rows, row, 3 + 5 * dimension, scale(add_scaled(after_j, image_velocity, 1.0), unit))
     if state.spin is not None:
         w_i, w_j = contact.spins
         first, width = 3 + 6 * dimension, state.spin.shape[1]
-        walled = 0.0 if j == NOBODY else unit
+        spin_unit = 0.0 if j == NOBODY else unit
         after_j = w_j if j == NOBODY else read(state.spin, j, 0, w_j)
         write(rows, row, first, scale(w_i, unit))
-        write(rows, row, first + width, scale(w_j, walled))
+        write(rows, row, first + width, scale(w_j, spin_unit))
         write(rows, row, first + 2 * width, scale(read(state.spin, i, 0, w_i), unit))
-        write(rows, row, first + 3 * width, scale(after_j, walled))
+        write(rows, row, first + 3 * width, scale(after_j, spin_unit))
 
 
 register(
     ContactLog,
-    {"most": Whole("Number of contacts that are kept, the last ones.", 1, 1_000_000, 10_000)},
+    ContactLogSettings,
     observe_contact=log_contact,
     observe_wall=log_contact,
 )

@@ -1,37 +1,48 @@
-"""Walls: what closes a side of the box, and how particles meet it.
+"""Walls on sides of the box, and the contacts of particles with them.
 
-A wall has a place, a motion, and what it does to particles. It is at rest, or slides along itself,
-at constant velocity or shaken; or it is shaken along its normal (motions.py): then it is farthest
-out at the side of the box, and its strokes go into the gas. A floor is one under a gas with
-gravity, which pulls particles towards it and away from a lid; along the other axes nothing pulls.
-Two equal walls that close both ends of the first axis are one effect, with one account. The
-surface of what moves along itself stays where it is: only the velocity that particles meet there
-changes.
+A wall has a side, a motion, and a material or a temperature. It is at rest, or slides along itself,
+at constant velocity or shaken; or it is shaken along its normal (motions.py): then its outermost
+position is the side of the box, and its strokes go into the gas. A floor is a wall under a gas with
+gravity, which pulls particles towards it and away from a lid; along the other axes there is no
+acceleration. Two equal walls that close both ends of the first axis are one effect, with one
+account. Motion along the wall changes the velocity of its surface, not its position.
 
-What bounces off has a restitution and a roughness. From a thermal wall, whatever a particle brings
-along, it leaves with the velocity and the spin of one that flies through a plane in a Maxwellian
-gas at the wall's temperature, which moves as the wall does: the component into the gas has the
-density v exp(-m v^2/(2 T)), all others are Gaussian with the variance T/m, those of a w with
+Particles bounce off a material with its restitution and roughness. They leave a thermal wall, for
+any velocity before, with the velocity and spin of particles that cross a plane in a Maxwellian gas
+at the wall's temperature, which moves with the wall: the component into the gas has the density
+v exp(-m v^2/(2 T)), all others are Gaussian with the variance T/m, and components of a w with
 T/(m q).
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from roughgas.base import InputError, NeedsError
+from roughgas.base.fields import described, number
 from roughgas.compiling.jit import jit
 from roughgas.effects import motions
-from roughgas.effects.motions import LOOK, Motion, Swing, fall, law_of, motion_of
+from roughgas.effects.motions import (
+    SEARCH_AGAIN,
+    Motion,
+    Shaking,
+    Stroke,
+    Swing,
+    fall_time,
+    law_of,
+    motion_of,
+)
 from roughgas.effects.settings import (
-    MATERIAL,
-    TEMPERATURE,
-    Number,
-    Word,
+    LENGTH_RANGE,
+    PERIOD_RANGE,
+    TEMPERATURE_RANGE,
+    Material,
+    WallRestitution,
+    WallRoughness,
     register,
 )
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall, note_contact
-from roughgas.kernel.event_lists import foreseen_until, next_contact
+from roughgas.kernel.event_lists import next_contact, predicted_until
 from roughgas.kernel.mathematics import (
     add_scaled,
     along_axis,
@@ -41,21 +52,21 @@ from roughgas.kernel.mathematics import (
     uniform,
 )
 from roughgas.kernel.particles import (
+    change_spin_and_book,
     enter_box,
     mass_of,
     radius_of,
     set_path_and_book,
     spin_mass_of,
     spin_of,
-    turn_and_book,
 )
 from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
 
-# Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
-# time
+# Minimum normal speed relative to a shaken wall, a/T, with which particles leave it: below, they
+# could hit it infinitely often in a finite time
 LEAST_DEPARTURE = 1e-3
 LOW, HIGH = 0, 1  # the ends of an axis
-SIDES = {  # name -> (axis, which end of it); -1 is the last axis
+SIDES = {  # name -> (axis, end); -1 is the last axis
     "left_wall": (0, LOW),
     "right_wall": (0, HIGH),
     "front_wall": (1, LOW),
@@ -63,89 +74,111 @@ SIDES = {  # name -> (axis, which end of it); -1 is the last axis
     "bottom_wall": (-1, LOW),
     "lid": (-1, HIGH),
 }
-NORMAL, ALONG = "normal", "along"
-SHAKEN_SETTINGS = motions.STROKE | {
-    "amplitude": motions.STROKE["amplitude"]._replace(
-        description="Largest displacement from the middle, in a: the same as `half_stroke`, and "
-        "half of what an amplitude of a floor is."
-    )
-}
-SIDE_SETTINGS = {
-    "restitution": MATERIAL["restitution"]._replace(default=1.0),
-    "roughness": MATERIAL["roughness"]._replace(default=-1.0),
-    "velocity": Number(
-        "Constant velocity along itself, in a/T: along the first axis, of a left or right wall "
-        "along the last one.",
-        "[-1e+06, 1e+06]",
-        default=0.0,
+
+
+ShakenAmplitude = Annotated[
+    float,
+    number(
+        LENGTH_RANGE,
+        "Maximum displacement from the middle, in a: the same as `half_stroke`, and half of the "
+        "amplitude of an equal motion of a floor.",
     ),
-    **motions.SETTINGS,
-    "period": motions.STROKE["period"]._replace(default=math.inf),
-    "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
-    "temperature": Number(
+]
+Temperature = Annotated[
+    float,
+    number(
+        TEMPERATURE_RANGE,
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
-        "velocities and spins, whatever its material.",
-        TEMPERATURE,
-        default=math.inf,
+        "velocities and spins.",
     ),
-}
+]
 
 
-class Place(NamedTuple):
-    """Which side of the box a wall closes."""
+class ShakenWallsSettings(Stroke, frozen=True, kw_only=True):
+    """Settings of `shaken_walls`."""
+
+    amplitude: ShakenAmplitude | None = None
+
+
+class WallSettings(Shaking, frozen=True, kw_only=True):
+    """Settings of a wall on one side of the box."""
+
+    restitution: WallRestitution = 1.0
+    roughness: WallRoughness = -1.0
+    period: Annotated[float, number(PERIOD_RANGE, "Time between strokes, in T.")] = math.inf
+    velocity: Annotated[
+        float,
+        number(
+            "[-1e+06, 1e+06]",
+            "Constant velocity along itself, in a/T: along the first axis, of a left or right wall "
+            "along the last one.",
+        ),
+    ] = 0.0
+    shaken: Annotated[
+        Literal["normal", "along"],
+        described("Whether it is shaken along its normal or along itself."),
+    ] = "normal"
+    temperature: Temperature | None = None
+
+
+class Side(NamedTuple):
+    """The side of the box that a wall closes, or both sides of an axis."""
 
     axis: int
-    inwards: float | None  # component of its normal into the gas, 1 or -1; None: both ends
-    at: float  # in a, when it is farthest out; the high one of two
-    along: int  # axis along which it moves if it moves along itself
+    inwards: float | None  # component of the normal into the gas, 1 or -1; None: both ends
+    position: float  # outermost, in a; of two walls the higher
+    slide_axis: int  # axis of motion along the wall
 
 
 class Wall(NamedTuple):
     """A wall on one side of the box: at rest, sliding, shaken or thermal."""
 
-    place: Place
+    side: Side
     restitution: float = 1.0
     roughness: float = -1.0
-    velocity: float = 0.0  # constant, along itself, in a/T
-    motion: Motion | None = None  # along its normal
-    sliding: Motion | None = None  # along itself
+    velocity: float = 0.0  # constant, along the wall, in a/T
+    motion: Motion | None = None  # along the normal
+    sliding: Motion | None = None  # along the wall
     temperature: float | None = None  # m a^2/T^2; None is not thermal
 
     @property
     def axis(self) -> int:
-        """The axis that it closes."""
-        return self.place.axis
+        """The axis that the wall closes, from 0."""
+        return self.side.axis
 
     @property
     def ends(self) -> tuple[int, ...]:
-        """Which ends of the axis it closes: LOW, HIGH, or both."""
-        if self.place.inwards is None:
+        """The closed ends of the axis: LOW, HIGH, or both."""
+        if self.side.inwards is None:
             return LOW, HIGH
-        return (HIGH if self.place.inwards < 0.0 else LOW,)
+        return (HIGH if self.side.inwards < 0.0 else LOW,)
 
     @property
     def period(self) -> float:
-        """Time between strokes, in T; infinite where it is not shaken."""
+        """Time between strokes, in T; infinite without shaking."""
         shaken = self.motion or self.sliding
         return math.inf if shaken is None or shaken.amplitude == 0.0 else shaken.period
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the wall that the settings describe; raise InputError where they contradict."""
-        place, velocity = _place(around), settings["velocity"]
-        half = motions.half_stroke(around, settings, fewest=0)
-        _refuse_contradictions(settings, around, half > 0.0)
-        if settings["temperature"] < math.inf:
-            return ThermalWall(place, velocity=velocity, temperature=settings["temperature"])
-        material = _material(settings)
+    def from_settings(cls, settings, context):
+        """Return the wall from WallSettings and a SceneContext, whose `name` is the wall's.
+
+        Raises InputError for settings that contradict each other or the scene.
+        """
+        side, velocity = _side(context), settings.velocity
+        _refuse_contradictions(settings, context)
+        half = motions.half_stroke(context, settings, min_count=0)
+        if settings.temperature is not None:
+            return ThermalWall(side, velocity=velocity, temperature=settings.temperature)
+        material = settings.resolved(context)
         if half > 0.0:
-            way = "motion" if settings["shaken"] == NORMAL else "sliding"
-            return MovingWall(place, *material, **{way: motion_of(half, settings)})
-        return (MovingWall if velocity else cls)(place, *material, velocity)
+            field = "motion" if settings.shaken == "normal" else "sliding"
+            return MovingWall(side, *material, **{field: motion_of(half, settings)})
+        return (MovingWall if velocity else cls)(side, *material, velocity)
 
 
 class MovingWall(Wall):
-    """A wall that puts energy in by its motion."""
+    """A wall that supplies energy by its motion."""
 
 
 class ThermalWall(Wall):
@@ -156,20 +189,26 @@ class Walls(Wall):
     """Side walls at rest that close the first axis."""
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the walls, as far apart as the box is wide."""
-        return cls(_both_ends(around), **settings)
+    def from_settings(cls, settings, context):
+        """Return the walls from the settings of a Material and a SceneContext.
+
+        They are as far apart as the box is wide.
+        """
+        return cls(_both_ends(context), *settings.resolved(context))
 
 
 class ShakenWalls(Wall):
     """Side walls that close the first axis, and are shaken along the last one as a sine."""
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the walls, as far apart as the box is wide."""
-        half, period = motions.half_stroke(around, settings, share=1.0), settings["period"]
-        swing = Swing(half, period, settings["phase"] * period)
-        return cls(_both_ends(around), *_material(settings), sliding=swing)
+    def from_settings(cls, settings, context):
+        """Return the walls from ShakenWallsSettings and a SceneContext.
+
+        They are as far apart as the box is wide.
+        """
+        half, period = motions.half_stroke(context, settings, share=1.0), settings.period
+        swing = Swing(half, period, settings.phase * period)
+        return cls(_both_ends(context), *settings.resolved(context), sliding=swing)
 
 
 class Floor(Wall):
@@ -178,166 +217,195 @@ class Floor(Wall):
     amplitude = property(lambda floor: floor.motion.amplitude)
 
     @classmethod
-    def from_settings(cls, settings, around):
-        """Return the floor whose motion the settings describe."""
-        motion = motion_of(motions.half_stroke(around, settings), settings)
-        place = Place(len(around.box) - 1, 1.0, 0.0, 0)
-        return cls(place, *_material(settings), motion=motion)
+    def from_settings(cls, settings, context):
+        """Return the floor from the settings of its Shaking and a SceneContext."""
+        motion = motion_of(motions.half_stroke(context, settings), settings)
+        side = Side(len(context.box) - 1, 1.0, 0.0, 0)
+        return cls(side, *settings.resolved(context), motion=motion)
 
 
-def _material(settings):
-    return settings["restitution"], settings["roughness"]
+def _both_ends(context):
+    """Return the Side of two walls that close both ends of the first axis."""
+    return Side(0, None, context.box[0], len(context.box) - 1)
 
 
-def _both_ends(around):
-    return Place(0, None, around.box[0], len(around.box) - 1)
-
-
-def _place(around):
-    """Return the place of a single wall; raise InputError where the box has no such side."""
-    key, (axis, end) = f"effects.{around.name}", SIDES[around.name]
-    dimension = len(around.box)
+def _side(context):
+    """Return the Side of the wall `context.name`; raise InputError if the box has no such side."""
+    key, (axis, end) = f"effects.{context.name}", SIDES[context.name]
+    dimension = len(context.box)
     if axis == 1 and dimension == 2:
         raise InputError(key, "in the plane", "be bottom_wall or lid there")
     axis %= dimension
-    if around.box[axis] is None:
+    if context.box[axis] is None:
         raise NeedsError(key, f"a length of the box along its {'last' if axis else 'first'} axis")
-    if around.name == "bottom_wall" and "gravity" in around.effects:
+    if context.name == "bottom_wall" and "gravity" in context.effects:
         raise InputError(key, "with gravity", "be a floor there, which may be at rest")
-    along = dimension - 1 if axis == 0 else 0
-    return Place(axis, 1.0 - 2.0 * end, around.box[axis] * end, along)
+    slide_axis = dimension - 1 if axis == 0 else 0
+    return Side(axis, 1.0 - 2.0 * end, context.box[axis] * end, slide_axis)
 
 
-def _refuse_contradictions(settings, around, shaken):
-    key, given = f"effects.{around.name}", around.effects[around.name]
-    if shaken and settings["period"] == math.inf:
+def _refuse_contradictions(settings, context):
+    """Raise InputError for settings of a wall that contradict each other."""
+    key = f"effects.{context.name}"
+    shaken = bool(settings.amplitude or settings.half_stroke)
+    if shaken and settings.period == math.inf:
         raise InputError(f"{key}.period", "(nothing)", "be given where the wall is shaken")
-    if shaken and settings["velocity"] != 0.0:
-        raise InputError(f"{key}.velocity", settings["velocity"], "be 0 where the wall is shaken")
-    if settings["temperature"] < math.inf:
+    if shaken and settings.velocity != 0.0:
+        raise InputError(f"{key}.velocity", settings.velocity, "be 0 where the wall is shaken")
+    if settings.temperature is not None:
+        defaults = WallSettings()
         for name in ("restitution", "roughness", "amplitude", "half_stroke"):
-            if name in given:
+            if getattr(settings, name) != getattr(defaults, name):
                 legal = "not be given where the wall has a temperature"
-                raise InputError(f"{key}.{name}", given[name], legal)
+                raise InputError(f"{key}.{name}", getattr(settings, name), legal)
 
 
 @jit
-def predict_wall(wall, index, state, scene, i):
-    place, dimension, radius = wall.place, len(scene.box), radius_of(state.bodies, i)
+def predict_wall(wall, account, state, scene, i):
+    """Return (time, code) of particle i's next meeting with the wall, or of a renewed search.
+
+    The code is MEETING or SEARCH_AGAIN, the segment of a piecewise linear motion, or the end of the
+    axis (LOW, HIGH) where the walls close both. Hook `predict` (kernel.hooks); `account` is the
+    index of the wall's phase in State.phase.
+    """
+    side, dimension, radius = wall.side, len(scene.box), radius_of(state.bodies, i)
     time = state.trajectory[i, 2 * dimension]
-    position = state.trajectory[i, place.axis]
-    velocity = state.trajectory[i, dimension + place.axis]
-    if place.inwards is None:
+    position = state.trajectory[i, side.axis]
+    velocity = state.trajectory[i, dimension + side.axis]
+    if side.inwards is None:
         end = HIGH if velocity > 0.0 else LOW
-        gap = place.at - radius - position if end == HIGH else position - radius
-        return time + fall(gap, -abs(velocity), 0.0), end
-    gap = place.inwards * (position - place.at) - radius
-    speed = place.inwards * velocity
-    gravity = _pull(hooks.acceleration(scene.effects), place, dimension)
+        gap = side.position - radius - position if end == HIGH else position - radius
+        return time + fall_time(gap, -abs(velocity), 0.0), end
+    gap = side.inwards * (position - side.position) - radius
+    speed = side.inwards * velocity
+    gravity = _gravity_towards(hooks.acceleration(scene.effects), side, dimension)
     if wall.motion is None:
-        return time + fall(gap, speed, gravity), motions.MEET
-    # What stays above all strokes is looked at again when its foresight ends. Where a search waits,
-    # this would change when events are, and with them the last bits of all times
-    if not law_of(wall.motion).waits:
-        span = state.clock[NOW] - time, foreseen_until(state, i) - time
+        return time + fall_time(gap, speed, gravity), motions.MEETING
+    # A particle that stays above all strokes until its next prediction has no event until then.
+    # With searches this would shift other events, and with them the last bits of all times
+    if not law_of(wall.motion).has_limit:
+        span = state.clock[NOW] - time, predicted_until(state, i) - time
         if motions.is_above(wall.motion.amplitude, gravity, gap, speed, span):
-            return math.inf, motions.MEET
-    phase = state.phase[index] + time
-    # Among many, few get there before a contact. Among few, the clock's base moves at other events
-    # if a search ends at one, and with it the last bits of all times
-    if law_of(wall.motion).waits and state.cells is not None:
+            return math.inf, motions.MEETING
+    phase = state.phase[account] + time
+    # In cells most particles collide before they meet the wall, so the search ends at the next
+    # contact. With a sweep this would move the clock's base at other events, and change the last
+    # bits of all times
+    if law_of(wall.motion).has_limit and state.cells is not None:
         limit = next_contact(state, i)[0]
         search = law_of(wall.motion).search
-        wait, what = search(wall.motion, gravity, gap, speed, phase, limit - time)
-        return (time + wait if what == motions.MEET else max(time + wait, limit)), what
-    if law_of(wall.motion).waits:  # what flies above all strokes is looked at when it is back
-        back = time + motions.time_below(wall.motion.amplitude, gravity, gap, speed, 0.0)
-        if back > state.clock[NOW]:
-            return back, LOOK
-    wait, what = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
-    return time + wait, what
+        delay, code = search(wall.motion, gravity, gap, speed, phase, limit - time)
+        return (time + delay if code == motions.MEETING else max(time + delay, limit)), code
+    if law_of(wall.motion).has_limit:  # above all strokes: search when it returns
+        return_time = time + motions.time_below(wall.motion.amplitude, gravity, gap, speed, 0.0)
+        if return_time > state.clock[NOW]:
+            return return_time, SEARCH_AGAIN
+    delay, code = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
+    return time + delay, code
 
 
 @jit
-def _pull(gravity, place, dimension):
-    """Return the acceleration towards a wall."""
-    if gravity is None or place.axis != dimension - 1:
+def _gravity_towards(gravity, side, dimension):
+    """Return the acceleration towards a wall; 0 along an axis without gravity.
+
+    `gravity` is the downward acceleration along the last axis, or None.
+    """
+    if gravity is None or side.axis != dimension - 1:
         return 0.0
-    return place.inwards * gravity
+    return side.inwards * gravity
 
 
 @jit
-def resolve_wall(wall, index, what, state, scene, i, time):
-    place, material = wall.place, (wall.restitution, wall.roughness)
+def resolve_wall(wall, account, code, state, scene, i, time):
+    """Let particle i meet the wall at `time`, or only search again; return NOBODY (-1).
+
+    `code` is from `predict_wall`. Hook `resolve` (kernel.hooks): the energy gained is entered in
+    the wall's account, whose index is `account`.
+    """
+    side, material = wall.side, (wall.restitution, wall.roughness)
     if wall.temperature is not None:
-        return _leave(wall, index, state, scene, i, time)
-    if wall.motion is not None and law_of(wall.motion).waits and what == LOOK:
+        return _leave_thermal_wall(wall, account, state, scene, i, time)
+    if wall.motion is not None and law_of(wall.motion).has_limit and code == SEARCH_AGAIN:
         return NOBODY
-    normal = along_axis(scene.box, place.axis, _inwards(place, what))
-    velocity = _velocity(wall, index, what, state, scene.box, time)
-    least = 0.0 if wall.motion is None else LEAST_DEPARTURE
-    return collide_with_wall(state, scene, index, i, time, material, normal, velocity, least)
+    normal = along_axis(scene.box, side.axis, _inwards(side, code))
+    velocity = _surface_velocity(wall, account, code, state, scene.box, time)
+    min_departure = 0.0 if wall.motion is None else LEAST_DEPARTURE
+    return collide_with_wall(
+        state, scene, account, i, time, material, normal, velocity, min_departure
+    )
 
 
 @jit
-def _inwards(place, end):
-    if place.inwards is None:
+def _inwards(side, end):
+    """Return the component of the normal into the gas, 1 or -1.
+
+    Of two walls it is the wall's at this `end` of the axis, LOW or HIGH.
+    """
+    if side.inwards is None:
         return 1.0 if end == LOW else -1.0
-    return place.inwards
+    return side.inwards
 
 
 @jit
-def _velocity(wall, index, what, state, box, time):
-    """Return the velocity of the surface when it meets a particle."""
-    place = wall.place
+def _surface_velocity(wall, account, code, state, box, time):
+    """Return the velocity of the wall's surface at a meeting with a particle at `time`.
+
+    `code` is from `predict_wall`.
+    """
+    side = wall.side
     if wall.motion is not None:
-        speed = law_of(wall.motion).met(wall.motion, what, state.phase[index] + time)
-        return along_axis(box, place.axis, place.inwards * speed)
+        speed = law_of(wall.motion).surface_speed(wall.motion, code, state.phase[account] + time)
+        return along_axis(box, side.axis, side.inwards * speed)
     if wall.sliding is not None:
-        here = law_of(wall.sliding).at(wall.sliding, state.phase[index] + time)
-        return along_axis(box, place.along, here[1])
-    return along_axis(box, place.along, wall.velocity)
+        surface = law_of(wall.sliding).surface(wall.sliding, state.phase[account] + time)
+        return along_axis(box, side.slide_axis, surface[1])
+    return along_axis(box, side.slide_axis, wall.velocity)
 
 
 @jit
-def _leave(wall, index, state, scene, i, time):
-    """Let particle i leave a thermal wall."""
-    place, box = wall.place, scene.box
+def _leave_thermal_wall(wall, account, state, scene, i, time):
+    """Draw velocity and spin of particle i as it leaves a thermal wall at `time`; return NOBODY."""
+    side, box = wall.side, scene.box
     position, before = enter_box(state, scene, i, time)
     thermal = math.sqrt(wall.temperature / mass_of(state.bodies, i))
-    outwards = place.inwards * thermal * math.sqrt(-2.0 * logarithm(1.0 - uniform(state.random)))
+    normal_velocity = (
+        side.inwards * thermal * math.sqrt(-2.0 * logarithm(1.0 - uniform(state.random)))
+    )
     random = gaussian_vector(state.random, before, thermal)
-    after = tuple(outwards if k == place.axis else random[k] for k in range(len(box)))
-    after = add_scaled(after, along_axis(box, place.along, wall.velocity), 1.0)
-    account = state.ledger[0, index]
-    set_path_and_book(state, scene, i, position, before, after, time, account)
+    after = tuple(normal_velocity if k == side.axis else random[k] for k in range(len(box)))
+    after = add_scaled(after, along_axis(box, side.slide_axis, wall.velocity), 1.0)
+    ledger_row = state.ledger[0, account]
+    set_path_and_book(state, scene, i, position, before, after, time, ledger_row)
     if state.spin is not None:
         w, spin = spin_of(state.spin, box, i), scene.effects.spin
         deviation = math.sqrt(wall.temperature / spin_mass_of(state.bodies, spin, i))
-        turn = subtract(gaussian_vector(state.random, w, deviation), w)
-        turn_and_book(state, scene, i, w, turn, account)
+        spin_change = subtract(gaussian_vector(state.random, w, deviation), w)
+        change_spin_and_book(state, scene, i, w, spin_change, ledger_row)
     note_contact(state, scene.effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
 
 
 @jit
-def phase_of_wall(wall, index, base):
-    """Return the time from the beginning of a period to the clock's base."""
+def phase_of_wall(wall, account, base):
+    """Return the time from the beginning of a period to the absolute time `base`, in T.
+
+    0 if the wall is not shaken. Hook `phase` (kernel.hooks), which does without the account.
+    """
     shaken = wall.sliding if wall.motion is None else wall.motion
-    return 0.0 if shaken is None else motions.since_period_began(shaken, base)
+    return 0.0 if shaken is None else motions.time_in_period(shaken, base)
 
 
 def displacement_of_wall(wall, time):
-    """Return how far the wall has moved at `time`, in a."""
+    """Return the displacement of a shaken wall at absolute `time` (T), in particle radii a."""
     return motions.displacement(wall.motion or wall.sliding, time)
 
 
-MET = {"predict": predict_wall, "resolve": resolve_wall}
-MOVES = {"phase": phase_of_wall, "displacement": displacement_of_wall, "drives": True}
-register(Wall, SIDE_SETTINGS, **MET)
-register(MovingWall, **MET, **MOVES)
-register(ThermalWall, **MET, random=True, drives=True)
-register(Walls, MATERIAL, **MET)
-register(ShakenWalls, SHAKEN_SETTINGS | MATERIAL, **MET, **MOVES)
-register(Floor, motions.SETTINGS | MATERIAL, **MET, **MOVES)
+EVENT_HOOKS = {"predict": predict_wall, "resolve": resolve_wall}
+MOTION_HOOKS = {"phase": phase_of_wall, "displacement": displacement_of_wall, "drives": True}
+register(Wall, WallSettings, **EVENT_HOOKS)
+register(MovingWall, **EVENT_HOOKS, **MOTION_HOOKS)
+register(ThermalWall, **EVENT_HOOKS, random=True, drives=True)
+register(Walls, Material, **EVENT_HOOKS)
+register(ShakenWalls, ShakenWallsSettings, **EVENT_HOOKS, **MOTION_HOOKS)
+register(Floor, Shaking, **EVENT_HOOKS, **MOTION_HOOKS)

@@ -1,26 +1,25 @@
-"""Which particles may meet a given one soon: those in its cell and in the cells around it.
+"""Candidates for contacts with a particle: all particles in its cell and in adjacent cells.
 
-A cell is at least a diameter wide, so a particle has to enter a neighbouring cell before it can be
-met. Each particle foresees its contacts with the particles around it up to the time at which it
-leaves its cell; then it looks around again. A particle that has entered its neighbourhood in the
-meantime has looked around, too, and has found it. Paths do not depend on the cells: like the sweep,
-they leave no trace in the results.
+A cell is at least a diameter wide, so a particle must enter an adjacent cell before it can be met.
+The contacts of a particle with its candidates are predicted until it leaves its cell; then they are
+predicted again, with the candidates of its new surroundings. When a particle enters the
+surroundings in the meantime, its own prediction covers the pair. Paths do not depend on the cells:
+like the sweep, they do not affect the results.
 
-Cells repeat with a period on each axis. That of an open axis has no meaning: particles a period
-away are considered, and never met. Under shear each row of cells moves with the mean flow, row k
-of n by about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each
-other slowly, and past the images no faster.
+Cells repeat with a period on each axis. On an open axis the period has no physical meaning:
+particles a period away are candidates, and never met. Under shear each row of cells moves with the
+mean flow, row k of n by about (k + 1/2)/n - 1/2 of the image shift: rows slide past each other
+slowly, and past the images no faster.
 
-In a dense layer (Scene.lists) a particle meets those around it many times before any of them has
-moved on. There each keeps a list of its neighbours. It has a region, a few tenths of a radius wide,
-and on its list are all whose regions are so near that the two may meet while both are in them. One
-that leaves its region gets a new one around it, and both its own list and those of its neighbours
-are mended. All regions move as the layer does in the mean, so that particles that fly together stay
-in theirs. Cells tell who is near: they hold the middles of the regions.
+In a dense layer (Scene.lists) a particle collides with its neighbours many times before any of them
+moves away. There each particle has a neighbour list. It is assigned a region, a few tenths of a
+radius wide, and its list has all particles with regions so near that the two may meet while both
+are inside. A particle that leaves its region gets a new one centred on it, and the neighbour lists
+concerned are updated. All regions move with the mean velocity of the layer, so that particles that
+fly together stay in theirs. Cells then contain the centres of the regions.
 
-Particles lie in memory in the order of their cells: neighbours are mostly in the cache when they
-are needed. As particles move they are numbered anew now and then; State.label keeps the numbers of
-the start.
+Particles are stored in the order of their cells, so that neighbours are mostly in the cache. As
+particles move they are re-sorted from time to time; State.label has their initial numbers.
 """
 
 import math
@@ -29,141 +28,171 @@ import numpy as np
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import (
+    assume_nonnegative,
     bits,
     gather,
-    index,
+    iota,
     lanes_of,
     larger,
-    numbers_in,
-    order,
+    load_scalars,
     trailing_zeros,
 )
 from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import choose_next, clear_contacts, enter, unlink
-from roughgas.kernel.hooks import present
+from roughgas.kernel.event_lists import clear_contacts, push_front, queue_next_event, unlink
+from roughgas.kernel.hooks import active
+from roughgas.kernel.layout import LIST_CAPACITY, MIN_CELL_WIDTH
 from roughgas.kernel.mathematics import dot, read, subtract, write
-from roughgas.kernel.memory import NARROWEST, ROOM
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
+    image_shift_at,
     largest_of,
     position_and_velocity,
     shifted,
-    slid,
 )
 from roughgas.kernel.state import ALIGNED, NOBODY, PREDICTIONS, SPAN
 
-ALL = -1  # every axis
-ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
-ALIGN_EVERY = 2  # predictions of each particle
-AT_ONCE = tuple(range(4))  # particles whose followers are read before any is put on a list
+ALL_AXES = -1
+ORIGIN = 0.38196601125  # of the cells, in their widths: no lattice has many sites on their edges
+ALIGN_EVERY = 2  # predictions per particle
+BATCH = tuple(range(4))  # particles whose followers are read before any is appended to a list
 
 
 @jit
 def list_around(state, scene, i, begin, time):
-    """List the particles around particle i in the shortlist, from `begin` on; return the end."""
+    """Write particle i's candidates for contacts to the shortlist; return the end index.
+
+    The shortlist is filled from index `begin` on. A particle that leaves its cell or region at
+    `time` is first moved to the next one. The predicted contacts that the candidates replace are
+    removed.
+    """
     if state.cells.neighbours is None:
         return _list_in_cells(state, scene, i, begin, time)
     if time >= state.cells.leave[i]:
         _move_region(state, scene, i, begin, time)
-    _foresee_exit(state, scene, i, time)
+    _predict_exit(state, scene, i, time)
     clear_contacts(state.agenda, i, time + state.clock[SPAN])
-    return _members(state, i, begin)
+    return _list_members(state, i, begin)
 
 
 @jit
 def _list_in_cells(state, scene, i, begin, time):
-    """List those in all cells around; if particle i leaves its cell now, only in the new ones."""
+    """Write the particles in i's cell and all adjacent ones to the shortlist; return the end index.
+
+    The shortlist is filled from index `begin` on. If particle i just leaves its cell, and its
+    predicted contacts remain valid, only the particles in cells that become adjacent are written.
+    """
     agenda, cells = state.agenda, state.cells
-    moved_on = time >= cells.leave[i]
-    axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
-    home = places(cells, i)
-    d, u = _in_cell(state, scene, i, time, home)
-    cells.leave[i], cells.heading[i] = _exit(scene, time, d, u, cells.widths)
-    slide = slid(hooks.sliding(scene.effects, state), time)
-    known = moved_on and state.trajectory[i, 2 * len(scene.box)] < time < agenda.complete_until[i]
-    outlook = state.clock[SPAN]
-    if present(scene.effects, "sliding"):
-        # rows slide past each other by one cell at most; cells of rows that have slid are not in
-        # line: one that moves on along them meets newcomers in part of another outlook
-        outlook = min(outlook, cells.counts[1] * cells.widths[0] / abs(slide[1]))
-        known = known and axis > 1
-    if not known:
-        axis = ALL
-        clear_contacts(agenda, i, time + outlook)
-    return _collect(state, home, begin, slide, outlook, axis, step)
+    leaves_cell = time >= cells.leave[i]
+    axis, step = _change_cell(state, scene, i, time) if leaves_cell else (ALL_AXES, 0)
+    home = cell_indices(cells, i)
+    d, u = _relative_to_cell(state, scene, i, time, home)
+    cells.leave[i], cells.heading[i] = _exit_from(scene, time, d, u, cells.widths)
+    image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
+    only_new_cells = (
+        leaves_cell and state.trajectory[i, 2 * len(scene.box)] < time < agenda.complete_until[i]
+    )
+    horizon = state.clock[SPAN]
+    if active(scene.effects, "image_shift"):
+        # rows slide past each other by at most a cell within a horizon; sliding rows are not
+        # aligned, so that after a step along a row some new candidates were not in the last list
+        horizon = min(horizon, cells.counts[1] * cells.widths[0] / abs(image_shift[1]))
+        only_new_cells = only_new_cells and axis > 1
+    if not only_new_cells:
+        axis = ALL_AXES
+        clear_contacts(agenda, i, time + horizon)
+    return _list_surroundings(state, home, begin, image_shift, horizon, axis, step)
 
 
 @jit
-def settle(state, scene, i, time):
-    """Put particle i on the list of its cell at `time`, and in the middle of its own region."""
+def assign_cell(state, scene, i, time):
+    """Insert particle i in the linked list of its cell at `time`, and centre its region on it.
+
+    Its own neighbour list is emptied; without neighbour lists there are no regions. The time at
+    which it leaves the cell is inf until the next prediction.
+    """
     cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
     if cells.neighbours is not None:
         position, velocity = _in_frame(cells.neighbours, position, velocity, time)
         write(cells.neighbours.middle, i, 0, position)
         cells.neighbours.number[i] = 0
-    slide = slid(hooks.sliding(scene.effects, state), time)
-    position, velocity = fold_into_box(position, velocity, cells.periods, slide)
+    image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
+    position, velocity = fold_into_box(position, velocity, cells.periods, image_shift)
     home = 0
     for k in range(len(position) - 1, -1, -1):
-        place = math.floor(position[k] / cells.widths[k] - ORIGIN)
-        home = home * cells.counts[k] + wrapped(place, cells.counts[k])
+        column = math.floor(position[k] / cells.widths[k] - ORIGIN)
+        home = home * cells.counts[k] + wrapped(column, cells.counts[k])
     cells.home[i] = home
-    _find_column(state, scene, i, time)
+    _correct_column(state, scene, i, time)
     cells.leave[i] = math.inf
-    enter(cells.first, cells.following, cells.home[i], i)
+    push_front(cells.first, cells.following, cells.home[i], i)
 
 
 @jit
-def _in_cell(state, scene, i, time, home):
-    """Return particle i's position relative to the middle of its home, and its velocity there."""
+def _relative_to_cell(state, scene, i, time, home):
+    """Return particle i's position relative to the centre of its cell, and its velocity, at `time`.
+
+    `home` are the indices of the cell along the axes. Under shear the velocity is relative to the
+    row of cells, which slides.
+    """
     cells, widths = state.cells, state.cells.widths
     position, velocity = position_and_velocity(state, scene, i, time)
-    slide = slid(hooks.sliding(scene.effects, state), time)
-    position, velocity = _beside_row(slide, cells, home[1], position, velocity)
+    image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
+    position, velocity = _relative_to_row(image_shift, cells, home[1], position, velocity)
     middle = tuple(widths[k] * (home[k] + ORIGIN + 0.5) for k in range(len(widths)))
     d = subtract(position, middle)
-    return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
-
-
-@jit
-def _beside_row(slide, cells, row, position, velocity):
-    """Return position and velocity relative to a row of cells, which slides under shear."""
-    if slide is None:
-        return position, velocity
-    share = (row + ORIGIN + 0.5) / cells.counts[1] - 0.5
-    return (
-        (position[0] - share * slide[0],) + position[1:],
-        (velocity[0] - share * slide[1],) + velocity[1:],
+    return shifted(
+        d, velocity, image_numbers(d, cells.periods, image_shift), cells.periods, image_shift
     )
 
 
 @jit
-def places(cells, i):
-    """Return which cell along each axis is particle i's home."""
-    home, across = index(int(cells.home[i])), index(cells.counts[0])
-    level = index(across * cells.counts[1])
+def _relative_to_row(image_shift, cells, row, position, velocity):
+    """Return position and velocity relative to a row of cells, which slides under shear.
+
+    `row` is its index along the second axis; `image_shift` holds at the time of the position.
+    """
+    if image_shift is None:
+        return position, velocity
+    height = (row + ORIGIN + 0.5) / cells.counts[1] - 0.5
+    return (
+        (position[0] - height * image_shift[0],) + position[1:],
+        (velocity[0] - height * image_shift[1],) + velocity[1:],
+    )
+
+
+@jit
+def cell_indices(cells, i):
+    """Return the index of particle i's cell along each axis, D integers."""
+    home, across = assume_nonnegative(int(cells.home[i])), assume_nonnegative(cells.counts[0])
+    level = assume_nonnegative(across * cells.counts[1])
     if len(cells.counts) == 2:
         return home % across, home // across
     return home % across, home % level // across, home // level
 
 
 @jit
-def _exit(scene, now, d, u, widths):
-    """Return when a particle in free flight leaves its cell, and its heading then."""
+def _exit_from(scene, now, d, u, widths):
+    """Return time and heading of a particle in free flight as it leaves its cell or region.
+
+    At the time `now` the particle is at d relative to the centre, with the velocity u; `widths` are
+    the sides of the cell or region. The heading is 2 * axis, plus 1 if upwards, as in
+    Cells.heading.
+    """
     gravity, last = hooks.acceleration(scene.effects), len(d) - 1
     time, up = _fall_out(gravity, d[last], u[last], 0.5 * widths[last])
     axis = last
     for k in range(last):
-        other, forward = _fly_out(d[k], u[k], 0.5 * widths[k])
-        if other < time:
-            time, up, axis = other, forward, k
+        side_time, upwards = _fly_out(d[k], u[k], 0.5 * widths[k])
+        if side_time < time:
+            time, up, axis = side_time, upwards, k
     return now + time, 2 * axis + int(up)
 
 
 @jit
 def _fly_out(d, u, half):
+    """Return when d + u t leaves [-half, half], and whether at the upper end."""
     forward = u > 0.0
     gap = max(half - (d if forward else -d), 0.0)
     return (gap / abs(u) if u != 0.0 else math.inf), forward
@@ -171,6 +200,7 @@ def _fly_out(d, u, half):
 
 @jit
 def _fall_out(gravity, d, u, half):
+    """Return when d + u t - gravity t^2/2 leaves [-half, half], and whether at the upper end."""
     if gravity is None:
         return _fly_out(d, u, half)
     above, below = max(half - d, 0.0), max(half + d, 0.0)
@@ -183,79 +213,106 @@ def _fall_out(gravity, d, u, half):
 
 
 @jit
-def _move_on(state, scene, i, time):
-    """Move particle i into the next cell on its way; return the axis and the step that it takes."""
+def _change_cell(state, scene, i, time):
+    """Move particle i to the adjacent cell that it enters at `time`; return the axis and the step.
+
+    The step is -1 or 1.
+    """
     cells, heading = state.cells, int(state.cells.heading[i])
     axis, step = heading // 2, 2 * (heading % 2) - 1
     unlink(cells.first, cells.following, cells.home[i], i)
-    home = places(cells, i)
-    cells.home[i] += _along(cells.counts, home, axis, step) - _along(cells.counts, home, axis, 0)
+    home = cell_indices(cells, i)
+    cells.home[i] += _index_term(cells.counts, home, axis, step) - _index_term(
+        cells.counts, home, axis, 0
+    )
     if axis == 1:
-        _find_column(state, scene, i, time)
-    enter(cells.first, cells.following, cells.home[i], i)
+        _correct_column(state, scene, i, time)
+    push_front(cells.first, cells.following, cells.home[i], i)
     return axis, step
 
 
 @jit
-def _find_column(state, scene, i, time):
-    """Correct the column of a particle's home, which is in the right row, if rows have slid."""
-    if present(scene.effects, "sliding"):
-        cells, home = state.cells, places(state.cells, i)
-        d, _ = _in_cell(state, scene, i, time, home)
-        moved = (home[0] + round(d[0] / cells.widths[0])) % cells.counts[0]
-        cells.home[i] += moved - home[0]
+def _correct_column(state, scene, i, time):
+    """Correct the column of particle i's cell at `time`, after a change of row, where rows
+    slide."""
+    if active(scene.effects, "image_shift"):
+        cells, home = state.cells, cell_indices(state.cells, i)
+        d, _ = _relative_to_cell(state, scene, i, time, home)
+        column = (home[0] + round(d[0] / cells.widths[0])) % cells.counts[0]
+        cells.home[i] += column - home[0]
 
 
 @jit
-def wrapped(place, count):
-    """Return a place that is up to one period off, brought back."""
-    return place + count if place < 0 else place - count if place >= count else place
+def wrapped(k, count):
+    """Return cell index k wrapped into [0, count), along an axis of `count` cells.
 
-
-@jit
-def _collect(state, home, begin, slide, duration, axis, step):
-    """List the particles around a cell in the shortlist, from `begin` on; return the end.
-
-    Take all cells around, or only those a step further along an axis: the first particle of each
-    cell, then those that follow the ones on the list, with no branch that depends on what is there.
+    k may be out of this range by up to one period.
     """
-    cells, found, number = state.cells, state.shortlist.found, begin
-    if axis == ALL:
-        for along in range(-1, 2):
-            number = _list_slab(cells, found, number, home, len(home) - 1, along, slide, duration)
+    return k + count if k < 0 else k - count if k >= count else k
+
+
+@jit
+def _list_surroundings(state, home, begin, image_shift, duration, axis, step):
+    """Write the particles around a cell to the shortlist, from index `begin` on; return the end.
+
+    The cells are `home` (indices along the axes) and all adjacent ones, if `axis` is ALL_AXES, else
+    only the adjacent ones a `step` further along the axis. Under shear rows slide by `image_shift`,
+    and candidates hold for `duration` from now. The first particle of each cell is written, then
+    the followers of written particles, without data-dependent branches.
+    """
+    cells, candidates, number = state.cells, state.shortlist.found, begin
+    if axis == ALL_AXES:
+        for slab in range(-1, 2):
+            number = _list_slab(
+                cells, candidates, number, home, len(home) - 1, slab, image_shift, duration
+            )
     else:
-        number = _list_slab(cells, found, number, home, axis, step, slide, duration)
+        number = _list_slab(cells, candidates, number, home, axis, step, image_shift, duration)
     k = begin
     while k < number:
-        k, number = _append_followers(cells.following, found, number, k, AT_ONCE)
-    found[index(number)] = 0  # `decide` reads on to the end of a register
+        k, number = _append_followers(cells.following, candidates, number, k, BATCH)
+    candidates[assume_nonnegative(number)] = 0  # `predict_contacts` reads to the end of a register
     return number
 
 
 @jit
-def _list_slab(cells, found, number, home, axis, step, slide, duration):
-    """List the first particle of each cell of a slab, a step from home along an axis.
+def _list_slab(cells, candidates, number, home, axis, step, image_shift, duration):
+    """Append the first particle of each cell of a slab to the candidates; return the new end index.
 
-    Which axis, the processor could not foresee: there is no branch for it. It is the last where
-    rows slide past each other.
+    The slab is a `step` away from the cell `home` along the axis; `number` is the end index before.
+    The axis selects values without a branch, which would be mispredicted. Where rows slide past
+    each other it is the last axis; their candidates hold for `duration`.
     """
-    if slide is not None:
-        return _list_sliding(cells, found, number, home, step, slide, duration)
-    counts, x, y = cells.counts, _beside(cells.counts, home, 0), _beside(cells.counts, home, 1)
-    here = _along(counts, home, 0, step) if axis == 0 else _along(counts, home, 1, step)
-    across, up = y if axis == 0 else x, (0,)
+    if image_shift is not None:
+        return _list_sliding(cells, candidates, number, home, step, image_shift, duration)
+    counts, x, y = (
+        cells.counts,
+        _index_terms(cells.counts, home, 0),
+        _index_terms(cells.counts, home, 1),
+    )
+    slab_term = (
+        _index_term(counts, home, 0, step) if axis == 0 else _index_term(counts, home, 1, step)
+    )
+    terms_across, terms_up = y if axis == 0 else x, (0,)
     if len(home) == 3:
-        here = _along(counts, home, 2, step) if axis == 2 else here
-        up = y if axis == 2 else _beside(cells.counts, home, 2)
-    for n in range(len(up)):
-        for m in range(len(across)):
-            number = _append(found, number, cells.first[index(here + across[m] + up[n])])
+        slab_term = _index_term(counts, home, 2, step) if axis == 2 else slab_term
+        terms_up = y if axis == 2 else _index_terms(cells.counts, home, 2)
+    for n in range(len(terms_up)):
+        for m in range(len(terms_across)):
+            number = _append(
+                candidates,
+                number,
+                cells.first[assume_nonnegative(slab_term + terms_across[m] + terms_up[n])],
+            )
     return number
 
 
 @jit
-def _along(counts, home, axis, step):
-    """Return what the place a step from home along an axis adds to the number of a cell."""
+def _index_term(counts, home, axis, step):
+    """Return the term of a flat cell index for the cell a `step` from `home` along an axis.
+
+    `counts` are the numbers of cells along the axes, `home` the indices of a cell.
+    """
     stride = 1
     for k in range(axis):
         stride *= counts[k]
@@ -263,129 +320,169 @@ def _along(counts, home, axis, step):
 
 
 @jit
-def _beside(counts, home, axis):
-    """Return what the place before, the same and the next one along an axis add to it."""
-    return tuple(_along(counts, home, axis, step) for step in range(-1, 2))
+def _index_terms(counts, home, axis):
+    """Return the terms of flat cell indices for the steps -1, 0 and 1 along an axis.
+
+    The arguments are as in _index_term.
+    """
+    return tuple(_index_term(counts, home, axis, step) for step in range(-1, 2))
 
 
 @jit
-def _list_sliding(cells, found, number, home, step, slide, duration):
+def _list_sliding(cells, candidates, number, home, step, image_shift, duration):
+    """Append the first particle of each cell that slides past `home` within `duration`.
+
+    Arguments and result are as in _list_slab.
+    """
     counts = cells.counts
-    level = _along(counts, home, 2, step) if len(home) == 3 else 0
-    for up in range(-1, 2) if len(home) == 3 else range(step, step + 1):
-        row = level + _along(counts, home, 1, up)
-        by = up / (counts[1] * cells.widths[0])
-        begin, slip = home[0] - 1 - by * slide[0], by * slide[1] * duration
-        first = math.floor(begin - max(slip, 0.0))
-        # of a row that has slid, the columns at both ends are beside home in part
-        number_of_columns = math.floor(begin + 3 - min(slip, 0.0)) - first + (up != 0)
+    level = _index_term(counts, home, 2, step) if len(home) == 3 else 0
+    for row_step in range(-1, 2) if len(home) == 3 else range(step, step + 1):
+        row = level + _index_term(counts, home, 1, row_step)
+        shift_of_row = row_step / (counts[1] * cells.widths[0])
+        begin, relative_shift = (
+            home[0] - 1 - shift_of_row * image_shift[0],
+            shift_of_row * image_shift[1] * duration,
+        )
+        first = math.floor(begin - max(relative_shift, 0.0))
+        # in a row that slides, four columns overlap the three around home
+        number_of_columns = (
+            math.floor(begin + 3 - min(relative_shift, 0.0)) - first + (row_step != 0)
+        )
         first %= counts[0]
         for column in range(first, first + number_of_columns):
-            number = _append(found, number, cells.first[index(row + wrapped(column, counts[0]))])
+            number = _append(
+                candidates,
+                number,
+                cells.first[assume_nonnegative(row + wrapped(column, counts[0]))],
+            )
     return number
 
 
 @jit
-def _append(found, number, j):
-    """Return how many are on the list with j, if that is a particle."""
-    found[index(number)] = j
-    return number + int(j != NOBODY)
+def _append(entries, length, j):
+    """Append particle j to the entries, unless it is NOBODY; return the new length."""
+    entries[assume_nonnegative(length)] = j
+    return length + int(j != NOBODY)
 
 
 @jit
-def _append_followers(following, found, number, k, those):
-    """Do so with those that follow the k-th on the list and some after it, if these are there.
+def _append_followers(following, entries, length, k, batch):
+    """Append the followers in their cells of a batch of listed particles, from entry k on.
 
-    Return how far the list is done. Each alone would wait for what was put on the list before it.
+    Return the next entry to process, and the new length; the batch ends at the present `length`.
+    One by one, each entry would wait for the append before it. `batch` is a tuple with as many
+    members as particles are processed together; `following` is Cells.following.
     """
-    end = number
-    behind = tuple(following[index(max(int(found[index(k + m)]), 0))] for m in range(len(those)))
-    for m in range(len(those)):
-        found[index(number)] = behind[m]
-        number += int((behind[m] != NOBODY) & (k + m < end))
-    return min(k + len(those), end), number
+    end = length
+    followers = tuple(
+        following[assume_nonnegative(max(int(entries[assume_nonnegative(k + m)]), 0))]
+        for m in range(len(batch))
+    )
+    for m in range(len(batch)):
+        entries[assume_nonnegative(length)] = followers[m]
+        length += int((followers[m] != NOBODY) & (k + m < end))
+    return min(k + len(batch), end), length
 
 
 # ------------------------------------------------------------------ lists of neighbours
 
 
 @jit
-def _foresee_exit(state, scene, i, time):
-    """Note when particle i leaves its region."""
+def _predict_exit(state, scene, i, time):
+    """Store the exit time of particle i, in free flight from `time` on, from its region."""
     cells, neighbours = state.cells, state.cells.neighbours
     position, velocity = position_and_velocity(state, scene, i, time)
     position, velocity = _in_frame(neighbours, position, velocity, time)
     d = subtract(position, read(neighbours.middle, i, 0, position))
     d, velocity = shifted(d, velocity, image_numbers(d, scene.box, None), scene.box, None)
-    cells.leave[i] = _exit(scene, time, d, velocity, neighbours.sides)[0]
+    cells.leave[i] = _exit_from(scene, time, d, velocity, neighbours.sides)[0]
 
 
 @jit
 def _in_frame(neighbours, position, velocity, time):
-    """Return position and velocity relative to the frame in which regions rest."""
+    """Return position and velocity at `time` relative to the frame that moves with the regions."""
     frame = neighbours.frame
     height = position[-1] - (frame[0] + frame[1] * time)
     return position[:-1] + (height,), velocity[:-1] + (velocity[-1] - frame[1],)
 
 
 @jit
-def _members(state, i, begin):
-    """Put the neighbours of particle i on the shortlist, from `begin` on, and more if its own list
-    lacks some; return the end."""
-    neighbours, found = state.cells.neighbours, state.shortlist.found
-    if neighbours.number[i] > ROOM:
-        return _collect(state, places(state.cells, i), begin, None, 0.0, ALL, 0)
-    for k in range(ROOM):
-        found[begin + k] = neighbours.members[i, k]
+def _list_members(state, i, begin):
+    """Write the neighbours of particle i to the shortlist, from index `begin` on; return the end.
+
+    All particles around its cell are written if its neighbour list is incomplete.
+    """
+    neighbours, candidates = state.cells.neighbours, state.shortlist.found
+    if neighbours.number[i] > LIST_CAPACITY:
+        return _list_surroundings(
+            state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0
+        )
+    for k in range(LIST_CAPACITY):
+        candidates[begin + k] = neighbours.members[i, k]
     return begin + int(neighbours.number[i])
 
 
 @compiled
 def _move_region(state, scene, i, begin, time):
-    """Let the region of particle i be around where it is at `time`."""
+    """Centre the region of particle i on its position at `time`, and update neighbour lists.
+
+    The shortlist from index `begin` on is scratch memory.
+    """
     cells = state.cells
-    for k in range(begin, _members(state, i, begin)):
-        _remove(cells.neighbours, state.shortlist.found[k], i)
+    for k in range(begin, _list_members(state, i, begin)):
+        _remove_neighbour(cells.neighbours, state.shortlist.found[k], i)
     unlink(cells.first, cells.following, cells.home[i], i)
-    settle(state, scene, i, time)
+    assign_cell(state, scene, i, time)
     _list_neighbours(state, scene, i, begin, len(state.changes))
 
 
 @jit
 def _list_neighbours(state, scene, i, begin, end):
-    """Put those near particle i, of numbers below `end`, on its list, and it on theirs."""
-    neighbours, found = state.cells.neighbours, state.shortlist.found
-    number = _collect(state, places(state.cells, i), begin, None, 0.0, ALL, 0)
+    """Enter particle i and each near particle with a number below `end` in each other's list.
+
+    Two particles are near if they can touch while both stay in their regions. The shortlist from
+    index `begin` on is scratch memory.
+    """
+    neighbours, candidates = state.cells.neighbours, state.shortlist.found
+    number = _list_surroundings(state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0)
     middle = read(neighbours.middle, i, 0, scene.box)
-    reach = NARROWEST * largest_of(state.bodies)
+    distance = MIN_CELL_WIDTH * largest_of(state.bodies)
     lanes = lanes_of(state.shortlist.when)
     for first in range(begin, number, lanes):
-        others = numbers_in(found, first, lanes)
-        x = tuple(gather(neighbours.middle, k, others) - middle[k] for k in range(len(scene.box)))
+        particles = load_scalars(candidates, first, lanes)
+        x = tuple(
+            gather(neighbours.middle, k, particles) - middle[k] for k in range(len(scene.box))
+        )
         x, _ = shifted(x, x, image_numbers(x, scene.box, None), scene.box, None)
         gap = tuple(larger(abs(x[k]) - neighbours.sides[k], 0.0) for k in range(len(scene.box)))
-        near = bits((dot(gap, gap) < reach * reach) & (order(lanes) < number - first))
+        near = bits((dot(gap, gap) < distance * distance) & (iota(lanes) < number - first))
         while near != np.uint64(0):
-            j = index(int(found[index(first + trailing_zeros(near))]))
+            j = assume_nonnegative(
+                int(candidates[assume_nonnegative(first + trailing_zeros(near))])
+            )
             if (j != i) & (j < end):
-                _add(neighbours, i, j)
-                _add(neighbours, j, i)
+                _add_neighbour(neighbours, i, j)
+                _add_neighbour(neighbours, j, i)
             near &= near - np.uint64(1)
 
 
 @jit
-def _add(neighbours, i, j):
+def _add_neighbour(neighbours, i, j):
+    """Append particle j to the neighbour list of i; a full list is marked as incomplete instead."""
     count = neighbours.number[i]
-    if count < ROOM:
+    if count < LIST_CAPACITY:
         neighbours.members[i, count] = j
-    neighbours.number[i] = min(count + 1, ROOM + 1)
+    neighbours.number[i] = min(count + 1, LIST_CAPACITY + 1)
 
 
 @jit
-def _remove(neighbours, i, j):
-    """Take j off the list of particle i. One that lacks some stays so until i moves its region."""
+def _remove_neighbour(neighbours, i, j):
+    """Remove particle j from the neighbour list of i.
+
+    An incomplete list stays as it is until i moves its region.
+    """
     count, members = neighbours.number[i], neighbours.members
-    if count > ROOM:
+    if count > LIST_CAPACITY:
         return
     for k in range(count):
         if members[i, k] == j:
@@ -395,37 +492,48 @@ def _remove(neighbours, i, j):
 
 
 @jit
-def align_now_and_then(state, scene, time):
-    """Let the regions of neighbour lists, if there are any, go on moving as the particles do."""
+def align_regions_if_due(state, scene, time):
+    """Set the velocity of all regions to the particles' mean velocity at `time`, if it is due.
+
+    It is due every ALIGN_EVERY predictions per particle. All particles are then queued anew.
+    Without neighbour lists nothing happens.
+    """
     if state.cells.neighbours is None:
         return
     counts = state.counts
     if counts[PREDICTIONS] - counts[ALIGNED] > ALIGN_EVERY * len(state.changes):
-        _align(state, scene, time)
+        _align_regions(state, scene, time)
         for i in range(len(state.changes)):
-            choose_next(state, i)
+            queue_next_event(state, i)
 
 
 @compiled
-def _align(state, scene, time):
+def _align_regions(state, scene, time):
+    """Set the velocity of all regions to the particles' mean along the last axis at `time`.
+
+    The exits of all particles from their regions are predicted anew.
+    """
     frame, total = state.cells.neighbours.frame, 0.0
     for i in range(len(state.changes)):
         total += position_and_velocity(state, scene, i, time)[1][-1]
     velocity = total / len(state.changes)
-    frame[0] += (frame[1] - velocity) * time  # where regions are now does not change
+    frame[0] += (frame[1] - velocity) * time  # the regions' present positions do not change
     frame[1] = velocity
     for i in range(len(state.changes)):
-        _foresee_exit(state, scene, i, time)
+        _predict_exit(state, scene, i, time)
     state.counts[ALIGNED] = state.counts[PREDICTIONS]
 
 
-# ------------------------------------------------------------------ particles in order
+# ------------------------------------------------------------------ order of particles in memory
 
 
 @jit
-def arrange(state, scene, time):
-    """Number the particles anew, in the order of their cells. The calendar's lists are lost."""
-    _settle_all(state, scene, time)
+def sort_particles(state, scene, time):
+    """Sort the particles in memory by their cells at `time`, and rebuild cells and neighbour lists.
+
+    The calendar's lists are overwritten.
+    """
+    _assign_all_cells(state, scene, time)
     order, cells = state.queue.later, state.cells
     number = 0
     for cell in range(cells.first.size):
@@ -435,50 +543,54 @@ def arrange(state, scene, time):
             number += 1
             i = cells.following[i]
     for i in range(number):
-        place = i
-        while order[place] != i:  # a cycle of the permutation
-            source = order[place]
-            _exchange(state, place, source)
-            order[place] = place
-            place = source
-        order[place] = place
-    _settle_all(state, scene, time)
+        k = i
+        while order[k] != i:  # a cycle of the permutation
+            source = order[k]
+            _exchange(state, k, source)
+            order[k] = k
+            k = source
+        order[k] = k
+    _assign_all_cells(state, scene, time)
     if cells.neighbours is not None:
-        _align(state, scene, time)
+        _align_regions(state, scene, time)
         for i in range(len(state.changes)):
             _list_neighbours(state, scene, i, 0, i)
 
 
 @jit
-def _settle_all(state, scene, time):
+def _assign_all_cells(state, scene, time):
+    """Insert all particles in their cells at `time`; regions are centred on them, and rest."""
     cells = state.cells
     if cells.neighbours is not None:
         cells.neighbours.frame[:] = 0.0
     cells.first[:] = NOBODY
     for i in range(len(state.changes) - 1, -1, -1):
-        settle(state, scene, i, time)
+        assign_cell(state, scene, i, time)
 
 
 @jit
 def _exchange(state, i, j):
+    """Exchange particles i and j in memory: paths, spins, bodies, times, changes and labels."""
     bodies = state.bodies
     _exchange_rows(state.trajectory, i, j)
     if state.spin is not None:
         _exchange_rows(state.spin, i, j)
     if bodies is not None:
         _exchange_entries((bodies.radius, bodies.mass, bodies.inertia, bodies.species), i, j)
-    _exchange_entries(state.moments, i, j)
+    _exchange_entries(state.particle_times, i, j)
     _exchange_entries((state.changes, state.label), i, j)
 
 
 @jit
 def _exchange_rows(array, i, j):
+    """Exchange rows i and j of an array (N, columns)."""
     for k in range(array.shape[1]):
         array[i, k], array[j, k] = array[j, k], array[i, k]
 
 
 @jit
 def _exchange_entries(arrays, i, j):
+    """Exchange entries i and j of each array (N,) of a tuple; None stands for a missing array."""
     for k in range(len(arrays)):
         if arrays[k] is not None:
             arrays[k][i], arrays[k][j] = arrays[k][j], arrays[k][i]

@@ -1,24 +1,25 @@
-"""What comes next: the upcoming events of each particle, and whose event is the earliest.
+"""Event lists: the upcoming events of each particle, and a queue for the earliest of all events.
 
-A particle's events are a short list of contacts, a boundary, and the end of its foresight. The
-earliest of them is its entry in the queue: blocks of keys for few particles, a calendar for many.
+A particle's events are a few contacts, an event of an effect (boundary), and the end of the time
+for which its contacts are predicted (horizon). The earliest of them is its entry in the queue:
+blocks of keys for few particles, a calendar for many.
 """
 
 import math
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import (
+    assume_nonnegative,
     bits,
     choose,
-    index,
-    least,
+    horizontal_min,
+    iota,
     load,
-    order,
     prefetch,
     store,
     trailing_zeros,
 )
-from roughgas.kernel.memory import BLOCK, SLOTS_OF_FEW
+from roughgas.kernel.layout import BLOCK, SWEEP_SLOTS
 from roughgas.kernel.state import (
     BOUNDARY,
     HORIZON,
@@ -30,55 +31,57 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 
-FETCHED = 8  # of a particle's list, about all that are on it
-FIT_IN_CACHE = 2048  # particles, for whose memory no event has to wait
-FLIGHTS = 2.5  # mean free flights to foresee
+PREFETCHED = 8  # entries of a particle's neighbour list, about all of them
+FIT_IN_CACHE = 2048  # days of a calendar: prefetching gains nothing for fewer
+FLIGHTS_AHEAD = 2.5  # mean free flights within the horizon
 LAST_DAY = 2.0**62
-EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
-GREATEST_CHANGE = 8.0  # of the days' length at once
-MOST_DAYS = 2.0**40  # in a span: events at one instant tell nothing of how long a day should be
+EVENTS_A_DAY = 2.0  # on average: day lists are short, and empty days rare
+MAX_PACE_FACTOR = 8.0  # change of the pace at once
+MAX_DAYS = 2.0**40  # in a span: simultaneous events do not determine a pace
 
-# ------------------------------------------------------------------ what to fetch ahead
+# ------------------------------------------------------------------ prefetching
 
 
 @jit
 def prefetch_calendar(state, day):
-    """Ask the memory for what the events after `day` need, so that they need not wait for it.
+    """Prefetch the memory that events after `day`, a day's number in the calendar, need.
 
-    A read that the caches cannot answer takes as long as a hundred additions, and an event has some
-    twenty of them. Only what has arrived can tell what is needed next: first the particles on a
-    day's list, a day later their partners and the lists of the cells around, then who is on these.
-    Particle 0 stands for one that is not there, since the processor could not foresee a branch.
+    A cache miss takes as long as a hundred additions, and an event has some twenty. Each stage
+    follows references that an earlier stage has fetched: first the particles on a day's list, a day
+    later their partners and the heads of the adjacent cells' lists, then the particles on those.
+    Particle 0 stands for a missing particle: a branch would be mispredicted.
     """
     queue = state.queue
-    _fetch(state, _first_of(queue, day + 5))
+    _prefetch_particle(state, _first_of(queue, day + 5))
     first = _first_of(queue, day + 4)
-    _fetch(state, _or_zero(queue.later[first]))
-    _fetch_next(state, first)
+    _prefetch_particle(state, _or_zero(queue.later[first]))
+    _prefetch_partner(state, first)
     first = _first_of(queue, day + 3)
     second = _or_zero(queue.later[first])
-    _fetch(state, _or_zero(queue.later[second]))
-    _fetch_next(state, second)
-    _fetch_around(state, first)
-    _fetch_around(state, _or_zero(queue.later[_first_of(queue, day + 2)]))
+    _prefetch_particle(state, _or_zero(queue.later[second]))
+    _prefetch_partner(state, second)
+    _prefetch_surroundings(state, first)
+    _prefetch_surroundings(state, _or_zero(queue.later[_first_of(queue, day + 2)]))
 
 
 @jit
 def _first_of(queue, day):
-    return _or_zero(queue.first[index(day & (queue.first.size - 1))])
+    """Return the first particle on a day's list, 0 if the list is empty."""
+    return _or_zero(queue.first[assume_nonnegative(day & (queue.first.size - 1))])
 
 
 @jit
 def _or_zero(i):
+    """Return particle i, or particle 0 in place of NOBODY."""
     return max(int(i), 0)
 
 
 @jit
-def _fetch(state, i):
-    """Ask for particle i."""
+def _prefetch_particle(state, i):
+    """Prefetch the path, spin and events of particle i."""
     prefetch(state.agenda.key, i)
     prefetch(state.trajectory, i)
-    if len(state.cells.counts) == 3:  # a disk has these in the same line
+    if len(state.cells.counts) == 3:  # of a disk they are in the trajectory's cache line
         prefetch(state.label, i)
         if state.spin is not None:
             prefetch(state.spin, i)
@@ -87,11 +90,11 @@ def _fetch(state, i):
 
 
 @jit
-def _fetch_next(state, i):
-    """Ask for the partner of particle i, and for which particles are first in the cells around."""
+def _prefetch_partner(state, i):
+    """Prefetch the partner in particle i's next contact, and the heads of adjacent cells' lists."""
     agenda, cells = state.agenda, state.cells
     partner = int(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
-    _fetch(state, partner if agenda.kind[i] >= 0 else i)
+    _prefetch_particle(state, partner if agenda.kind[i] >= 0 else i)
     if cells.neighbours is None:
         rows = _rows_around(state, i)
         for k in range(len(rows)):
@@ -99,11 +102,11 @@ def _fetch_next(state, i):
 
 
 @jit
-def _fetch_around(state, i):
-    """Ask for those on the list of particle i, or first in the cells around."""
+def _prefetch_surroundings(state, i):
+    """Prefetch the particles on the neighbour list of i, or the first ones in adjacent cells."""
     cells = state.cells
     if cells.neighbours is not None:
-        for k in range(FETCHED):
+        for k in range(PREFETCHED):
             prefetch(state.trajectory, cells.neighbours.members[i, k])
         return
     rows = _rows_around(state, i)
@@ -114,8 +117,11 @@ def _fetch_around(state, i):
 
 @jit
 def _rows_around(state, i):
-    """Return the first cells of the rows of three around where the next event of particle i is: at
-    home, or in the cell that it enters. At the edges of the box they are others."""
+    """Return the first cell of each row of three adjacent cells around the cell of i's next event.
+
+    The cell is the particle's home, or the cell that it enters. Approximate at the edges of the
+    box.
+    """
     cells, heading, flat = state.cells, int(state.cells.heading[i]), len(state.cells.counts) == 2
     row, level = cells.counts[0], cells.counts[0] * cells.counts[1]
     stride = 1 if heading < 2 else row if heading < 4 else level
@@ -131,23 +137,27 @@ def _rows_around(state, i):
 
 
 @jit
-def enter(first, following, place, i):
-    """Put particle i first on the list of a place."""
-    following[i] = first[place]
-    first[place] = i
+def push_front(first, following, k, i):
+    """Insert particle i at the head of linked list k.
+
+    `first` has the head of each list, `following` (N,) the next particle on the list of each
+    particle.
+    """
+    following[i] = first[k]
+    first[k] = i
 
 
 @jit
-def unlink(first, following, place, i):
-    """Take particle i off the list of a place."""
-    before = index(int(first[place]))
+def unlink(first, following, k, i):
+    """Remove particle i from linked list k; `first` and `following` are as in `push_front`."""
+    before = assume_nonnegative(int(first[k]))
     if before == i:
-        first[place] = following[i]
+        first[k] = following[i]
         return
-    after = index(int(following[before]))
+    after = assume_nonnegative(int(following[before]))
     while after != i:
         before = after
-        after = index(int(following[before]))
+        after = assume_nonnegative(int(following[before]))
     following[before] = following[i]
 
 
@@ -156,7 +166,7 @@ def unlink(first, following, place, i):
 
 @jit
 def enter_in_queue(state, i, time):
-    """Let the next event of particle i be at a time, inf if there is none."""
+    """Set the time of particle i's next event in the queue; inf if it has none."""
     if state.cells is None:
         _enter_in_blocks(state, i, time)
     else:
@@ -165,82 +175,88 @@ def enter_in_queue(state, i, time):
 
 @jit
 def earliest(state):
-    """Return whose event comes first."""
+    """Return the number of the particle with the earliest event in the queue."""
     return _earliest_in_blocks(state) if state.cells is None else _earliest_in_calendar(state)
 
 
 @jit
 def _enter_in_blocks(state, i, time):
+    """Set the time of particle i's next event in its block, and the block's minimum."""
     queue, block = state.queue, i // BLOCK
-    keys = _with(queue.keys, block, i % BLOCK, time)
-    first = least(keys)
+    keys = _store_key(queue.keys, block, i % BLOCK, time)
+    first = horizontal_min(keys)
     queue.whose[block] = BLOCK * block + trailing_zeros(bits(keys == first))
-    _with(queue.least, block // BLOCK, block % BLOCK, first)
+    _store_key(queue.least, block // BLOCK, block % BLOCK, first)
 
 
 @jit
-def _with(blocks, block, place, time):
-    """Put a time in its place in a block, and return the block.
+def _store_key(blocks, block, k, time):
+    """Store a time as entry k of a block, and return the block's times.
 
-    It is stored as a whole, as it is read: a read of several stores at once has to wait for them.
+    `blocks` has the shape (blocks, BLOCK). The block is stored as one vector, as it is loaded: a
+    vector load right after scalar stores would stall.
     """
-    times = choose(order(BLOCK) == place, time, load(blocks, block, 0, BLOCK))
+    times = choose(iota(BLOCK) == k, time, load(blocks, block, 0, BLOCK))
     store(blocks, block, 0, times)
     return times
 
 
 @jit
 def _earliest_in_blocks(state):
+    """Return the particle with the earliest event, from the minima of the blocks."""
     queue = state.queue
     first, block = math.inf, 0
     for k in range(len(queue.least)):
         candidates = load(queue.least, k, 0, BLOCK)
-        if least(candidates) < first:
-            first = least(candidates)
+        if horizontal_min(candidates) < first:
+            first = horizontal_min(candidates)
             block = BLOCK * k + trailing_zeros(bits(candidates == first))
-    return queue.whose[index(block)]
+    return queue.whose[assume_nonnegative(block)]
 
 
 @jit
 def _enter_in_calendar(state, i, time):
-    """A day shares its list with the same day of other years. An entry costs the same among a
-    thousand particles as among a million."""
+    """Set the time of particle i in the calendar, at a cost independent of the number of particles.
+
+    A day shares its list with the same day of other years.
+    """
     queue, key = state.queue, state.agenda.key
     if key[i] < math.inf:
-        place = day_of(queue, key[i]) & (queue.first.size - 1)
-        unlink(queue.first, queue.later, place, i)
+        list_index = day_of(queue, key[i]) & (queue.first.size - 1)
+        unlink(queue.first, queue.later, list_index, i)
     key[i] = time
     if time < math.inf:
         day = day_of(queue, time)
-        enter(queue.first, queue.later, day & (queue.first.size - 1), i)
+        push_front(queue.first, queue.later, day & (queue.first.size - 1), i)
         queue.today[0] = min(queue.today[0], day)
 
 
 @jit
 def day_of(queue, time):
-    """Return the day of a time; far ones share the last day."""
+    """Return the number of the calendar's day for a time; all late times share LAST_DAY."""
     return int(min(time * queue.pace[0], LAST_DAY))
 
 
 @jit
 def _earliest_in_calendar(state):
+    """Return the particle with the earliest event, by a search from today's list on."""
     queue, key = state.queue, state.agenda.key
     queue.events[0] += 1
     days = queue.today[0] - queue.since[0]
     if 4 * queue.events[0] > queue.first.size or days > queue.first.size:
-        _keep_pace(state, days)
+        _adjust_pace(state, days)
     day = queue.today[0]
     for _ in range(queue.first.size):
-        least, place = math.inf, NOBODY
-        i = int(queue.first[index(day & (queue.first.size - 1))])
-        while i != NOBODY and least > state.clock[NOW]:  # nothing comes before now
-            i = index(i)
-            if key[i] < least and day_of(queue, key[i]) <= day:
-                least, place = key[i], i
+        earliest_time, particle = math.inf, NOBODY
+        i = int(queue.first[assume_nonnegative(day & (queue.first.size - 1))])
+        while i != NOBODY and earliest_time > state.clock[NOW]:  # nothing comes before now
+            i = assume_nonnegative(i)
+            if key[i] < earliest_time and day_of(queue, key[i]) <= day:
+                earliest_time, particle = key[i], i
             i = int(queue.later[i])
-        if place != NOBODY:
+        if particle != NOBODY:
             queue.today[0] = day
-            return place
+            return particle
         day += 1
         if queue.first.size > FIT_IN_CACHE:
             prefetch_calendar(state, day)
@@ -249,54 +265,60 @@ def _earliest_in_calendar(state):
 
 @jit
 def _earliest_of_all(state):
-    """Return whose event is the earliest when nothing happens for a year."""
+    """Return the particle with the earliest event, by a search over all, for an empty year."""
     key = state.agenda.key
-    place = 0
+    particle = 0
     for i in range(key.size):
-        if key[i] < key[place]:
-            place = i
-    if key[place] < math.inf:
-        state.queue.today[0] = day_of(state.queue, key[place])
-    return place
+        if key[i] < key[particle]:
+            particle = i
+    if key[particle] < math.inf:
+        state.queue.today[0] = day_of(state.queue, key[particle])
+    return particle
 
 
 @compiled
-def _keep_pace(state, days):
-    """Let days be shorter, or longer, if they do not hold about EVENTS_A_DAY each.
+def _adjust_pace(state, days):
+    """Change the length of days if they do not hold about EVENTS_A_DAY each.
 
-    A layer makes most of its contacts within a tenth of a stroke, when it lands.
+    `days` have passed since the count of events began. Event rates vary: a layer makes most of its
+    contacts within a tenth of a stroke, when it lands.
     """
     queue = state.queue
-    change = queue.events[0] / (EVENTS_A_DAY * max(days, 1))
-    change = 1.0 if 0.5 < change < 2.0 else min(max(change, 1.0 / GREATEST_CHANGE), GREATEST_CHANGE)
-    _set_pace(state, min(queue.pace[0] * change, MOST_DAYS / state.clock[SPAN]))
+    factor = queue.events[0] / (EVENTS_A_DAY * max(days, 1))
+    factor = 1.0 if 0.5 < factor < 2.0 else min(max(factor, 1.0 / MAX_PACE_FACTOR), MAX_PACE_FACTOR)
+    _set_pace(state, min(queue.pace[0] * factor, MAX_DAYS / state.clock[SPAN]))
 
 
 @jit
 def _set_pace(state, pace):
-    """Begin to count the events; list all particles anew if days are to be of another length."""
+    """Set the number of days per time, `pace`, and restart the count of events.
+
+    All particles are listed anew if it has changed.
+    """
     queue, key = state.queue, state.agenda.key
     if pace != queue.pace[0]:
         queue.pace[0] = pace
         queue.first[:] = NOBODY
         for i in range(key.size):
             if key[i] < math.inf:
-                enter(queue.first, queue.later, day_of(queue, key[i]) & (queue.first.size - 1), i)
+                push_front(
+                    queue.first, queue.later, day_of(queue, key[i]) & (queue.first.size - 1), i
+                )
         queue.today[0] = day_of(queue, state.clock[NOW])
     queue.events[0], queue.since[0] = 0, queue.today[0]
 
 
 @jit
 def clear_calendar(state):
-    """Empty the calendar, and set its days to hold about EVENTS_A_DAY each."""
+    """Empty the calendar, and set the length of days to about EVENTS_A_DAY each."""
     state.agenda.key[:] = math.inf
     clock = state.clock
     crossings = 2.0 * clock[TYPICAL_SPEED] / max(state.cells.widths)
-    contacts = 4.0 * FLIGHTS / clock[LONGEST_HORIZON]  # none where nothing is known yet
+    contacts = 4.0 * FLIGHTS_AHEAD / clock[LONGEST_HORIZON]  # 0 before any horizon is set
     pace = len(state.changes) * (crossings + contacts) / EVENTS_A_DAY
-    state.queue.pace[0] = 0.0  # all are to be listed anew
+    state.queue.pace[0] = 0.0  # a change, so that all particles are re-listed
     _set_pace(state, pace if pace > 0.0 else 1.0)
-    state.queue.events[0] = -len(state.changes)  # that all is foreseen first takes no time
+    state.queue.events[0] = -len(state.changes)  # the first predictions of all are simultaneous
 
 
 # ------------------------------------------------------------------ events of a particle
@@ -304,7 +326,10 @@ def clear_calendar(state):
 
 @jit
 def clear_contacts(agenda, i, complete_until):
-    """Forget particle i's contacts; those added next are complete until the given time."""
+    """Remove particle i's contacts; the contacts added next are complete until the given time.
+
+    `agenda` is State.agenda.
+    """
     for k in range(agenda.slot_time.shape[1]):
         agenda.slot_time[i, k] = math.inf
     agenda.complete_until[i] = complete_until
@@ -312,9 +337,11 @@ def clear_contacts(agenda, i, complete_until):
 
 @jit
 def add_contact(agenda, i, time, partner, change):
-    """Put a contact in the place of the latest on particle i's list; of the two the earlier stays.
+    """Store a contact in the slot of particle i's latest contact, if the new one is earlier.
 
-    A time of inf is no contact, and a slot that holds it is free.
+    `agenda` is State.agenda, `time` the time of the contact, `partner` the other particle, `change`
+    the partner's State.changes at the prediction. A time of inf is no contact, and marks a free
+    slot.
     """
     times = agenda.slot_time
     latest = 0
@@ -329,7 +356,7 @@ def add_contact(agenda, i, time, partner, change):
 
 
 @jit
-def choose_next(state, i):
+def queue_next_event(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
     time, kind = next_contact(state, i)
@@ -343,13 +370,16 @@ def choose_next(state, i):
 
 @jit
 def next_contact(state, i):
-    """Return (time, kind) of particle i's first contact, or of the end of its foresight if that
-    comes first."""
+    """Return (time, kind) of particle i's first contact, or of its horizon if that comes first.
+
+    The horizon is the end of the time for which its contacts are predicted. The kind is a contact
+    slot, or HORIZON, as in Agenda.kind.
+    """
     agenda, kind = state.agenda, HORIZON
     times, time = agenda.slot_time, agenda.complete_until[i]
     if state.cells is None:
-        slots = load(times, i, 0, SLOTS_OF_FEW)
-        first = least(slots)
+        slots = load(times, i, 0, SWEEP_SLOTS)
+        first = horizontal_min(slots)
         slot = trailing_zeros(bits(slots == first))
         return (first, slot) if first <= time else (time, HORIZON)
     time = min(time, state.cells.leave[i])
@@ -361,9 +391,9 @@ def next_contact(state, i):
 
 
 @jit
-def foreseen_until(state, i):
-    """Return a time at which particle i's whole future is foreseen again, if not before."""
+def predicted_until(state, i):
+    """Return an upper bound of the time of particle i's next prediction."""
     until = state.agenda.complete_until[i]
     if state.cells is None or state.cells.neighbours is not None:
-        return until  # when it leaves its region may change without that
+        return until  # the time of leaving a region may change without a prediction
     return min(until, state.cells.leave[i])

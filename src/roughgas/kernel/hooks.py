@@ -1,160 +1,177 @@
-"""How the kernel asks the effects of a scene, and only those, for their part.
+"""Dispatch: calls the hooks of active effects, resolved at compile time.
 
-An effect is a NamedTuple whose file registers its hooks: the functions that are its part in the
-simulation (effects/settings.py; docs/effects.md has an example). `scene.effects` has one entry per
-effect, None where the scene does without it: a loop over those present is written out before numba
-compiles it (compiling/jit.py), and an absent effect leaves no instruction.
+An effect is a NamedTuple whose file registers its hooks, the functions that the kernel calls
+(effects/settings.py; docs/effects.md has an example). `scene.effects` has one entry per effect,
+None where the effect is absent. Loops over active effects are unrolled before numba compiles them
+(compiling/jit.py), so that an absent effect costs no instruction.
 
-Where several effects have a say, each gets the value as those listed before it in `Effects` have
-left it.
+Where several effects change one value, they act in the order of `Effects`: each receives the
+result of the effect before it.
 """
 
 import functools
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from roughgas.compiling.jit import jit, of_types
+from roughgas.compiling.jit import jit, static
 
-CODES = 8  # kinds of event per effect
+CODES = 8  # event codes per effect
 
 
 class Hooks(NamedTuple):
-    """What an effect takes part in; None or False is what it leaves alone.
+    """The hooks of an effect; None or False stands for a missing hook.
 
-    All functions are jitted but for `moment` and `displacement`. `index` is the effect's number
-    among those present, and that of its account in State.ledger. Times count from the clock's base.
-    Times and velocities are in the units of a gas that is rescaled as it cools: with
-    e = State.counts[EXPONENT], a velocity in a/T is the present one times 2^e, a time in T the
-    present one over 2^e.
+    All functions are jitted except `particle_times` and `displacement`. `account` is the rank of
+    the effect among the active ones, and the index of its account in State.ledger. Times count from
+    the clock's base. Times and velocities are in the current units of a gas that is rescaled as it
+    cools: with e = State.counts[EXPONENT], a velocity in a/T is the current value times 2^e, a time
+    in T the current value over 2^e.
     """
 
     acceleration: Callable | None = None
-    """(effect, index) -> downward acceleration along the last axis"""
-    sliding: Callable | None = None
-    """(effect, index, state) -> (offset, velocity) along the first axis of the image above,
+    """(effect, account) -> downward acceleration along the last axis"""
+    image_shift: Callable | None = None
+    """(effect, account, state) -> (offset, velocity) of the image above along the first axis,
     at the clock's base"""
     restitution: Callable | None = None
-    """(effect, index, r, state, i, j, time, speed) -> normal restitution of a contact, from the
-    value so far and the normal relative velocity, negative where the partners approach; j < 0 for
-    a boundary"""
+    """(effect, account, r, state, i, j, time, speed) -> normal restitution of a contact; r is the
+    result of the effects before, `speed` the normal relative velocity, negative where the partners
+    approach; j < 0 at a boundary"""
     roughness: Callable | None = None
-    """(effect, index, beta, r, speed, slip, pair) -> tangential restitution of a contact of
-    particles that spin, from the value so far, r and speed as above, the tangential relative
-    velocity of the surfaces, a vector, and the particles.Pair; without the state, it can depend on
-    ratios of velocities only"""
+    """(effect, account, beta, r, speed, slip_velocity, pair) -> tangential restitution of a contact
+    of particles that spin; beta is the result of the effects before, r and speed as above,
+    `slip_velocity` the tangential relative velocity of the surfaces, a vector, and `pair` the
+    particles.Pair. The state is no argument, so the result depends on ratios of velocities only"""
     after_contact: Callable | None = None
-    """(effect, index, state, i, time): note that particle i has had a contact"""
+    """(effect, account, state, i, time): record that particle i has had a contact"""
     observe_contact: Callable | None = None
-    """(effect, index, state, contact): look at a contact.Contact of a pair that has just been made,
-    and change nothing but State.sums and State.log"""
+    """(effect, account, state, contact): observe a contact.Contact of a pair that has just
+    collided; may change nothing but State.sums and State.log"""
     observe_wall: Callable | None = None
-    """The same of a contact with a floor or a wall, unless that is thermal"""
+    """As `observe_contact`, for contacts with a floor or a wall that is not thermal"""
     observe_flight: Callable | None = None
-    """(effect, index, state, i, crossings, elapsed): look at the free flight that ends with an
-    event of particle i, before its path and spin change: the periods of each axis by which it has
-    left the box, and its duration; change nothing but State.paths"""
+    """(effect, account, state, i, crossings, elapsed): observe the free flight that ends with an
+    event of particle i, before its path and spin change; `crossings` are the periods of each axis
+    by which it has left the box, `elapsed` its duration; may change nothing but State.paths"""
     sums: Mapping[str, int] | Callable | None = None
-    """Columns of samples in which the effect keeps running sums -> the power of velocity that each
-    has as its unit, or a function of all Effects that returns this; State.sums has them under the
+    """Sample columns of the effect's running sums -> the power of velocity in the unit of each; or
+    a function of all Effects that returns this mapping. State.sums holds the sums under the
     effect's name"""
     predict: Callable | None = None
-    """(effect, index, state, scene, i) -> (time, what) of particle i's next event that is not a
-    contact of a pair; 0 <= what < CODES"""
+    """(effect, account, state, scene, i) -> (time, code) of particle i's next event that is not a
+    contact of a pair; 0 <= code < CODES"""
     resolve: Callable | None = None
-    """(effect, index, what, state, scene, i, time): carry that event out, book the energy that it
-    puts in, and count in State.changes each particle whose velocity it changes; returns another
-    particle than i whose velocity has changed, or NOBODY"""
+    """(effect, account, code, state, scene, i, time): carry that event out, enter the energy gained
+    in the ledger, and count in State.changes each particle whose velocity it changes; returns a
+    second particle whose velocity has changed, or NOBODY"""
     transfer: Callable | None = None
-    """(effect, index, state, work): book the energy that particles gain where they, or their
-    partners, change images"""
+    """(effect, account, state, work): enter in the ledger the energy that particles gain where
+    they, or their partners, are replaced by another periodic image"""
     phase: Callable | None = None
-    """(effect, index, base) -> the effect's phase when the clock's base is at absolute time
+    """(effect, account, base) -> the effect's phase when the clock's base is at absolute time
     `base`"""
-    moment: Callable | None = None
-    """(effect, number, rng) -> a time for each of `number` particles (array), which State.moments
-    keeps under the effect's name"""
+    particle_times: Callable | None = None
+    """(effect, number, rng) -> an initial time for each of `number` particles (array), kept in
+    State.particle_times under the effect's name"""
     displacement: Callable | None = None
-    """(effect, time) -> how far what the effect moves is from where it was at time 0, in a, for
-    movies; `time` is absolute, in T"""
+    """(effect, time) -> displacement, in a, of the wall or image that the effect moves, relative to
+    time 0, for movies; `time` is absolute, in T"""
     random: bool = False
-    """The effect draws random numbers, from State.random"""
+    """Whether the effect draws random numbers, from State.random"""
     drives: bool = False
-    """The effect puts energy in"""
+    """Whether the effect supplies energy"""
 
 
-class Part(NamedTuple):
-    """An effect's part in a hook."""
+class ActiveHook(NamedTuple):
+    """A hook of an active effect."""
 
-    place: int  # in Effects
-    rank: int  # among the effects that are present
-    own: Any  # the function, or True
+    effect_index: int  # of the effect in Effects
+    account: int  # rank among the active effects, and index of the account in State.ledger
+    function: Any  # the hook; a flag or a mapping where the hook is no function
 
 
-@of_types
-def present(effects, name):
-    """Return the parts of every effect that is there and has the hook, in listed order.
+@static
+def active(effects, name):
+    """Return the ActiveHook of each active effect that has the hook `name`, in order of acting.
 
     `effects` is an Effects, or its type in numba.
     """
-    kinds = getattr(effects, "types", None)
-    if kinds is None:
-        return _present(tuple(map(type, effects)), name)
-    return _present(tuple(getattr(kind, "instance_class", type(kind)) for kind in kinds), name)
+    types = getattr(effects, "types", None)
+    if types is None:
+        return _active(tuple(map(type, effects)), name)
+    return _active(tuple(getattr(kind, "instance_class", type(kind)) for kind in types), name)
 
 
 @functools.cache
-def _present(classes, name):
-    there = [(k, getattr(c.hooks, name)) for k, c in enumerate(classes) if hasattr(c, "hooks")]
-    return tuple(Part(place, rank, own) for rank, (place, own) in enumerate(there) if own)
+def _active(classes, name):
+    """Return the ActiveHooks called `name` of effects of these classes; NoneType: an absent one."""
+    hooks = [(k, getattr(c.hooks, name)) for k, c in enumerate(classes) if hasattr(c, "hooks")]
+    return tuple(ActiveHook(k, account, hook) for account, (k, hook) in enumerate(hooks) if hook)
 
 
 def accounts(effects):
-    """Return the number of effects with an account in the ledger: passive effects have none.
+    """Return the number of accounts in the ledger, one per active effect that is not passive.
 
-    Passive effects are last in Effects, so that the accounts of the others have their ranks.
+    Passive effects are last in Effects, so that the accounts of the others equal their ranks.
     """
-    passive = len(present(effects, "observe_contact")) + len(present(effects, "observe_flight"))
+    passive = len(active(effects, "observe_contact")) + len(active(effects, "observe_flight"))
     return sum(effect is not None for effect in effects) - passive
 
 
 def sums(effects):
-    """Return the columns of each effect that keeps running sums, by its place in Effects."""
-    parts = present(effects, "sums")
-    return {part.place: part.own(effects) if callable(part.own) else part.own for part in parts}
+    """Return the columns of running sums, {index in Effects: {column: power of velocity}}.
+
+    The power is of velocity in the unit of the column; effects without running sums are left out.
+    """
+    hooks = active(effects, "sums")
+    return {
+        hook.effect_index: hook.function(effects) if callable(hook.function) else hook.function
+        for hook in hooks
+    }
 
 
 def displacement(effect, time):
-    """Return how far an effect has moved what it moves by `time` (T), in a; None if absent."""
+    """Return the displacement of the effect's wall or image at absolute `time`; None if absent.
+
+    Time in T, displacement in particle radii a.
+    """
     return None if effect is None else effect.hooks.displacement(effect, time)
 
 
 @jit
 def acceleration(effects):
-    """Return the downward acceleration, None without any."""
+    """Return the downward acceleration along the last axis; None without gravity."""
     g = None
-    for part in present(effects, "acceleration"):
-        g = part.own(effects[part.place], part.rank)
+    for hook in active(effects, "acceleration"):
+        g = hook.function(effects[hook.effect_index], hook.account)
     return g
 
 
 @jit
-def sliding(effects, state):
-    """Return (offset, velocity) of the image above at the clock's base; None: at rest."""
-    slide = None
-    for part in present(effects, "sliding"):
-        slide = part.own(effects[part.place], part.rank, state)
-    return slide
+def image_shift(effects, state):
+    """Return (offset, velocity) of the image above, along the first axis, at the clock's base.
+
+    None where the image rests.
+    """
+    shift = None
+    for hook in active(effects, "image_shift"):
+        shift = hook.function(effects[hook.effect_index], hook.account, state)
+    return shift
 
 
 @jit
 def transfer(effects, state, work):
-    """Book the energy that particles gain as other images."""
-    for part in present(effects, "transfer"):
-        part.own(effects[part.place], part.rank, state, work)
+    """Enter in the ledger the energy `work` that particles gain by a change of periodic image."""
+    for hook in active(effects, "transfer"):
+        hook.function(effects[hook.effect_index], hook.account, state, work)
 
 
 @jit
 def observe_flight(effects, state, i, crossings, elapsed):
-    """Report the end of a flight of particle i to the effects that observe flights."""
-    for part in present(effects, "observe_flight"):
-        part.own(effects[part.place], part.rank, state, i, crossings, elapsed)
+    """Call the hooks that observe the end of a free flight of particle i.
+
+    `crossings` are the periods per axis between the box and the end of the flight, `elapsed` is its
+    duration.
+    """
+    for hook in active(effects, "observe_flight"):
+        hook.function(effects[hook.effect_index], hook.account, state, i, crossings, elapsed)

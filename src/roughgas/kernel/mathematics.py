@@ -1,15 +1,14 @@
 """Arithmetic that has the same bits on every machine: vectors, functions, random numbers.
 
-Double precision is rounded step by step: sums and products are never fused. Only the sieve
-(sweep.py) uses single precision, where a b + c may be one instruction; its rounding shows in no
-result.
+In double precision sums and products are rounded separately, never fused. Only the sieve (sweep.py)
+uses single precision, where a b + c may be one instruction; its rounding affects no result.
 
 Vectors are tuples, of one to three numbers or lanes (compiling/lanes.py).
 
-Every libm rounds sine, cosine and logarithm as it likes; here they are sums and products. Angles
-are in turns, whose reduction to an eighth is exact.
+Implementations of libm round sine, cosine and logarithm differently; here they consist of sums and
+products. Angles are in turns, whose reduction to an eighth is exact.
 
-Random numbers are those of SplitMix64, whose state is one word (G. L. Steele, D. Lea and
+Random numbers come from SplitMix64, whose state is one word (G. L. Steele, D. Lea and
 C. H. Flood, OOPSLA 2014, p. 453): integer arithmetic and exact products.
 """
 
@@ -56,7 +55,10 @@ def add_scaled(a, b, s):
 
 @jit
 def read(array, i, first, like):
-    """Return the components array[i, first:first + len(like)] as a tuple."""
+    """Return the components array[i, first:first + len(like)] as a tuple.
+
+    `like` is any tuple of as many components.
+    """
     return tuple(array[i, first + k] for k in range(len(like)))
 
 
@@ -69,13 +71,16 @@ def write(array, i, first, vector):
 
 @jit
 def along_axis(like, axis, s):
-    """Return the vector s along an axis, with as many components as `like`."""
+    """Return the vector of length s along an axis, with as many components as the tuple `like`."""
     return tuple(s if k == axis else 0.0 for k in range(len(like)))
 
 
 @jit
 def spin_cross(w, n):
-    """Return w x n; in the plane w has one component, along the third axis."""
+    """Return w x n, for a spin w and a vector n.
+
+    In the plane w has one component, along the third axis.
+    """
     if len(w) == 1:
         return (-w[0] * n[1], w[0] * n[0])
     return (w[1] * n[2] - w[2] * n[1], w[2] * n[0] - w[0] * n[2], w[0] * n[1] - w[1] * n[0])
@@ -83,7 +88,7 @@ def spin_cross(w, n):
 
 @jit
 def cross_to_spin(n, g):
-    """Return n x g as a spin: one component in the plane, three in space."""
+    """Return n x g, for two vectors, as a spin: one component in the plane, three in space."""
     if len(n) == 2:
         return (n[0] * g[1] - n[1] * g[0],)
     return spin_cross(n, g)
@@ -101,11 +106,11 @@ def cross_squared(a, b):
 
 # ------------------------------------------------------------------ functions
 
-TURN = 6.283185307179586  # 2 pi, and what that lacks
+TURN = 6.283185307179586  # 2 pi in double precision; REMAINDER is the difference to 2 pi
 ROOT_HALF, LN_2 = 0.7071067811865476, 0.6931471805599453
 REMAINDER = 2.4492935982947064e-16
-# (-1)^k (2 pi)^n / n!, n = 2k + 1 for the sine and 2k for the cosine, from k = 1 on; what follows
-# would add less than 3e-18 within an eighth of a turn
+# (-1)^k (2 pi)^n / n!, n = 2k + 1 for the sine and 2k for the cosine, from k = 1 on; further terms
+# are less than 3e-18 within an eighth of a turn
 SINE = (
     -41.34170224039976,
     81.60524927607506,
@@ -148,7 +153,7 @@ def sine_and_cosine(turns):
 
 @compiled
 def _series(c, x):
-    """Return the polynomial in x with coefficients c, in an order that keeps the processor busy."""
+    """Return the polynomial in x with coefficients c, in an order with few data dependencies."""
     x2 = x * x
     low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2
     high = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2
@@ -157,10 +162,10 @@ def _series(c, x):
 
 @compiled
 def logarithm(x):
-    """Return ln x for 0 < x < inf, within 3e-16 of it, or of 1 where it is smaller.
+    """Return ln x for 0 < x < inf, with an error below 3e-16 max(1, |ln x|).
 
     With x = m 2^k, m within a factor sqrt(2) of 1, and s = (m - 1)/(m + 1), it is
-    k ln 2 + 2 (s + s^3/3 + s^5/5 + ...); what is left out is below 1e-18.
+    k ln 2 + 2 (s + s^3/3 + s^5/5 + ...); the truncated terms are below 1e-18.
     """
     m, k = math.frexp(x)
     if m < ROOT_HALF:
@@ -172,36 +177,48 @@ def logarithm(x):
     return k * LN_2 + 2.0 * (s + s * series)
 
 
-STEP = np.uint64(0x9E3779B97F4A7C15)
-FIRST, SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
+INCREMENT = np.uint64(0x9E3779B97F4A7C15)
+MULTIPLIER_1, MULTIPLIER_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 
 
 @jit
 def uniform(state):
-    """Draw a number in [0, 1), a multiple of 2^-53; `state`, an array of one word, moves on."""
-    state[0] += STEP
+    """Draw a uniform random number in [0, 1), a multiple of 2^-53.
+
+    `state` is State.random, the generator's word in an array (1,), which moves on.
+    """
+    state[0] += INCREMENT
     word = state[0]
-    word = (word ^ (word >> np.uint64(30))) * FIRST
-    word = (word ^ (word >> np.uint64(27))) * SECOND
+    word = (word ^ (word >> np.uint64(30))) * MULTIPLIER_1
+    word = (word ^ (word >> np.uint64(27))) * MULTIPLIER_2
     word ^= word >> np.uint64(31)
     return (word >> np.uint64(11)) * 2.0**-53
 
 
 @jit
 def random_vector(state, like, size):
-    """Return a vector of as many components as `like`, each uniform in [-size, size]."""
+    """Draw a vector of as many components as the tuple `like`, each uniform in [-size, size].
+
+    `state` is State.random.
+    """
     return tuple(_centred(state, size) for k in range(len(like)))
 
 
 @jit
 def gaussian_vector(state, like, size):
-    """Return a vector of as many components as `like`, each Gaussian with the deviation `size`."""
+    """Draw a vector of as many components as `like`, each Gaussian with standard deviation `size`.
+
+    `state` is State.random.
+    """
     return tuple(size * gaussian(state) for k in range(len(like)))
 
 
 @jit
 def gaussian(state):
-    """Draw a Gaussian number of mean 0 and variance 1: G. Marsaglia's polar method (1962)."""
+    """Draw a Gaussian number of mean 0 and variance 1: G. Marsaglia's polar method (1962).
+
+    `state` is State.random.
+    """
     while True:
         x, y = _centred(state, 1.0), _centred(state, 1.0)
         square = x * x + y * y
@@ -211,4 +228,5 @@ def gaussian(state):
 
 @jit
 def _centred(state, size):
+    """Draw a uniform random number in [-size, size]; `state` is State.random."""
     return size * (2.0 * uniform(state) - 1.0)

@@ -1,17 +1,16 @@
-"""Particles: where they are among periodic images, what bodies they have, how they spin and fly.
+"""Particles: periodic images, radii and masses, spins, and free flight.
 
-Periodic images: an axis of the box has a length, or is None and open. Under Lees-Edwards shear
-(`slide` = (offset, velocity), else None) the images above are displaced by the offset along the
-first axis and move with the velocity along it: the offset holds at the clock's base (hooks.sliding)
-or, after `slid`, at the time in question.
+Periodic images: `box` has for each axis its length in particle radii a, its period, or None where
+it is open. Under Lees-Edwards shear (`image_shift` = (offset, velocity), else None) the images
+above are displaced by the offset along the first axis and move with the velocity along it.
+hooks.image_shift returns its value at the clock's base, `image_shift_at` its value at a given time.
 
-Bodies: State.bodies is None in a gas of one species, whose radius and mass are 1, at no cost. What
-is computed for particles that happen to be alike has the same bits as without them: of two equal
-numbers x, x/(x + x) is 1/2 exactly. All that belongs to a pair is symmetric in the two, to the last
-bit.
+Bodies: State.bodies is None in a gas of one species, whose radius and mass are 1, at no cost. With
+bodies that happen to be equal, results have the same bits as without: for two equal numbers x, x/(x
++ x) is 1/2 exactly. All properties of a pair are symmetric in its particles, to the last bit.
 
-Spins are surface velocities a w, of one component in the plane and three in space; in a scene
-without spin they are None.
+Spins are surface velocities a w, with one component in the plane and three in space; None in a
+scene without spin.
 """
 
 from typing import Any, NamedTuple
@@ -21,7 +20,7 @@ import numpy as np
 from roughgas.compiling.jit import jit
 from roughgas.compiling.lanes import is_single, multiply_add
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import present
+from roughgas.kernel.hooks import active
 from roughgas.kernel.mathematics import add_scaled, dot, read, subtract, write
 
 FIRST_LARGE_32, ONE_32 = np.float32(1.5 * 2.0**23), np.float32(1.0)
@@ -32,78 +31,95 @@ FIRST_LARGE_64 = 1.5 * 2.0**52
 def periods(x, length):
     """Return x/length rounded to the nearest integer, ties to even; exact to 2^22 (2^51 in double).
 
-    Adding and subtracting a number whose spacing is 1 rounds in two additions, which every x86-64
-    machine has in vector form and which give the same bits on all of them. A loop over many divides
-    once and multiplies.
+    x is a coordinate, `length` a period of the box. Adding and subtracting a number whose spacing
+    is 1 rounds by two additions, which every x86-64 machine has in vector form, with the same bits
+    on all machines. The reciprocal of the length is computed once per loop.
     """
     large = FIRST_LARGE_32 if is_single(length) else FIRST_LARGE_64
-    one = ONE_32 if is_single(length) else 1.0
-    return multiply_add(x, one / length, large) - large
+    unity = ONE_32 if is_single(length) else 1.0
+    return multiply_add(x, unity / length, large) - large
 
 
 @jit
-def slid(slide, time):
-    """Return the slide as it is at `time` after the clock's base."""
-    return None if slide is None else (slide[0] + slide[1] * time, slide[1])
+def image_shift_at(image_shift, time):
+    """Return the image shift (offset, velocity) at `time` after the clock's base.
+
+    `image_shift` is the shift at the base; None without shear.
+    """
+    return None if image_shift is None else (image_shift[0] + image_shift[1] * time, image_shift[1])
 
 
 @jit
-def image_numbers(x, box, slide):
-    """Return which periodic image brings the separation x closest to zero, in periods per axis.
+def image_numbers(x, box, image_shift):
+    """Return the numbers of periods per axis to subtract from separation x for its nearest image.
 
-    That of an open axis, which has one image, is not used.
+    They are whole numbers, as floats. The image shift holds at the time of the separation. The
+    number of an open axis is not used.
     """
     numbers = tuple(x[k] if box[k] is None else periods(x[k], box[k]) for k in range(len(box)))
-    if slide is None:
+    if image_shift is None:
         return numbers
-    along = multiply_add(-numbers[1], slide[0], x[0])
-    return (periods(along, box[0]),) + numbers[1:]
+    sheared = multiply_add(-numbers[1], image_shift[0], x[0])
+    return (periods(sheared, box[0]),) + numbers[1:]
 
 
 @jit
 def _shift(x, numbers, box):
+    """Return position or separation x less these numbers of periods along each periodic axis."""
     return tuple(
         x[k] if box[k] is None else multiply_add(-numbers[k], box[k], x[k]) for k in range(len(box))
     )
 
 
 @jit
-def shifted(x, u, numbers, box, slide):
-    """Return separation and relative velocity as that image has them."""
+def shifted(x, u, numbers, box, image_shift):
+    """Return separation x and relative velocity u of the image with these `numbers` of periods.
+
+    The numbers are subtracted along each axis, as from image_numbers.
+    """
     moved = _shift(x, numbers, box)
-    if slide is None:
+    if image_shift is None:
         return moved, u
     return (
-        (multiply_add(-numbers[1], slide[0], moved[0]),) + moved[1:],
-        (multiply_add(-numbers[1], slide[1], u[0]),) + u[1:],
+        (multiply_add(-numbers[1], image_shift[0], moved[0]),) + moved[1:],
+        (multiply_add(-numbers[1], image_shift[1], u[0]),) + u[1:],
     )
 
 
 @jit
-def fold_into_box(position, velocity, box, slide):
-    """Return the image of a particle in the box, whose periodic axes reach from 0 to L."""
-    return shifted(position, velocity, _image_in_box(position, box, slide), box, slide)
+def fold_into_box(position, velocity, box, image_shift):
+    """Return position and velocity of the image in the box, where periodic axes run from 0 to L.
+
+    The image shift holds at the time of the position.
+    """
+    return shifted(position, velocity, _image_in_box(position, box, image_shift), box, image_shift)
 
 
 @jit
-def _image_in_box(position, box, slide):
+def _image_in_box(position, box, image_shift):
+    """Return the periods per axis to subtract from a position for its image in the box."""
     centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
-    return image_numbers(centred, box, slide)
+    return image_numbers(centred, box, image_shift)
 
 
 @jit
-def periods_outside(position, box, slide):
-    """Return the periods of each axis by which `fold_into_box` moves a position; 0 if open."""
-    numbers = _image_in_box(position, box, slide)
+def periods_outside(position, box, image_shift):
+    """Return the whole numbers of periods per axis that `fold_into_box` subtracts, as floats.
+
+    The number of an open axis, whose `box` entry is None, is 0. `image_shift` is (offset, velocity)
+    of the image above at the time of the position, or None.
+    """
+    numbers = _image_in_box(position, box, image_shift)
     return tuple(0.0 if box[k] is None else numbers[k] for k in range(len(position)))
 
 
 @jit
-def speed_limit(box, half, reach):
-    """Return the square of the relative speed below which no second image is met within +-`half`.
+def single_image_limit(box, half, distance):
+    """Return the squared relative speed below which a pair meets no second image.
 
-    None where no axis is periodic. It has some room for rounding. `reach` is the distance of a pair
-    in contact, or of any.
+    It holds for times within +-`half` of the instant whose nearest image is known; `distance` is
+    the contact distance of the pair, or an upper bound of it. Includes a margin for rounding. None
+    where no axis is periodic.
     """
     lengths = tuple(box[k] for k in range(len(box)) if box[k] is not None)
     if len(lengths) == 0:
@@ -111,36 +127,39 @@ def speed_limit(box, half, reach):
     shortest = lengths[0]
     for k in range(1, len(lengths)):
         shortest = min(shortest, lengths[k])
-    speed = (0.5 * shortest - 1.0005 * reach) / half
+    speed = (0.5 * shortest - 1.0005 * distance) / half
     return speed * speed
 
 
 class Pair(NamedTuple):
-    """What decides what a contact does, of two particles or of one with a wall.
+    """Effective masses and friction of a contact of two particles, or of a particle with a wall.
 
-    s = m q is a particle's moment of inertia over a^2. The tangential impulse P moves the surfaces
-    of a pair past each other by P (1/m_i + 1/s_i + 1/m_j + 1/s_j), and turns i by P/s_i.
+    s = m q is a particle's moment of inertia over a^2. A tangential impulse P changes the slip
+    velocity by P (1/m_i + 1/s_i + 1/m_j + 1/s_j), and the spin of i by P/s_i.
     """
 
-    mass: float  # twice the reduced mass; at a wall that of the particle
-    inertia: float  # mean q, each weighted with the share of the turning that the particle takes
-    bulk: float  # twice the reduced s; at a wall that of the particle
-    gives: tuple[float, float]  # twice these shares
+    mass: float  # twice the reduced mass; at a wall the mass of the particle
+    inertia: float  # mean q, weighted with the particles' shares of the spin change
+    reduced_spin_mass: float  # twice the reduced s; at a wall the s of the particle
+    spin_shares: tuple[float, float]  # twice the particles' shares of the spin change
     mu: Any  # coefficient of friction; None where particles are alike, NaN without friction
 
 
 @jit
-def alike(spin):
-    """Return the Pair of particles that are alike; `spin` is the effect, or None."""
+def identical_pair(spin):
+    """Return the Pair of two particles of radius and mass 1; `spin` is the effect Spin, or None."""
     q = 0.0 if spin is None else spin.inertia
     return Pair(1.0, q, q, (1.0, 1.0), None)
 
 
 @jit
 def pair_of(bodies, spin, i, j):
-    """Return the Pair of two particles."""
+    """Return the Pair of particles i and j, their effective masses and friction.
+
+    `bodies` is State.bodies, `spin` the effect Spin, or None.
+    """
     if bodies is None:
-        return alike(spin)
+        return identical_pair(spin)
     m_i, m_j = bodies.mass[i], bodies.mass[j]
     q_i, q_j = bodies.inertia[i], bodies.inertia[j]
     s_i, s_j = m_i * q_i, m_j * q_j
@@ -156,76 +175,97 @@ def pair_of(bodies, spin, i, j):
 
 @jit
 def pair_with_wall(bodies, spin, i):
-    """Return the Pair of a particle and a wall."""
+    """Return the Pair of particle i and a wall, its effective masses and friction.
+
+    `bodies` is State.bodies, `spin` the effect Spin, or None.
+    """
     if bodies is None:
-        return alike(spin)
+        return identical_pair(spin)
     m, q = bodies.mass[i], bodies.inertia[i]
     return Pair(m, q, m * q, (1.0, 0.0), bodies.pairs[bodies.species[i], -1, 2])
 
 
 @jit
 def radius_of(bodies, i):
-    """Return the radius of a particle."""
+    """Return the radius of particle i, in particle radii a; `bodies` is State.bodies."""
     return 1.0 if bodies is None else bodies.radius[i]
 
 
 @jit
 def largest_of(bodies):
-    """Return the largest radius."""
+    """Return the largest radius of all particles, in particle radii a; `bodies` is State.bodies."""
     return 1.0 if bodies is None else bodies.largest[0]
 
 
 @jit
-def reach_of(bodies, i, j):
-    """Return the distance at which a pair touches."""
+def contact_distance(bodies, i, j):
+    """Return the distance of the centres of i and j in contact, the sum of their radii.
+
+    In particle radii a; `bodies` is State.bodies.
+    """
     return radius_of(bodies, i) + radius_of(bodies, j)
 
 
 @jit
 def mass_of(bodies, i):
-    """Return the mass of a particle."""
+    """Return the mass of particle i, in particle masses m; `bodies` is State.bodies."""
     return 1.0 if bodies is None else bodies.mass[i]
 
 
 @jit
 def spin_mass_of(bodies, spin, i):
-    """Return s of a particle: s (a w)^2/2 is its energy of rotation; `spin` is the effect."""
+    """Return s = m q of particle i, whose rotational energy is s (a w)^2/2.
+
+    q = I/(m a^2) is of its own mass and radius; `bodies` is State.bodies, `spin` the effect Spin.
+    """
     return spin.inertia if bodies is None else bodies.mass[i] * bodies.inertia[i]
 
 
 @jit
 def material_of(bodies, scene, i, j):
-    """Return (r, beta) of a pair's contacts."""
-    if bodies is None or scene.effects.species.alike:
+    """Return (r, beta), normal restitution and roughness, of contacts of particles i and j.
+
+    `bodies` is State.bodies.
+    """
+    if bodies is None or scene.effects.species.same_material:
         return scene.restitution, scene.roughness
-    of_one, of_other = bodies.species[i], bodies.species[j]
-    return bodies.pairs[of_one, of_other, 0], bodies.pairs[of_one, of_other, 1]
+    species_i, species_j = bodies.species[i], bodies.species[j]
+    return bodies.pairs[species_i, species_j, 0], bodies.pairs[species_i, species_j, 1]
 
 
 @jit
 def spin_of(spin, box, i):
-    """Return the spin of particle i."""
+    """Return the spin a w of particle i, a tuple of 2 D - 3 components; None without spin.
+
+    `spin` is State.spin; `box` has as many entries as there are axes.
+    """
     return None if spin is None else tuple(spin[i, k] for k in range(2 * len(box) - 3))
 
 
 @jit
-def turn_spin(spin, i, before, turn):
-    """Let particle i's spin change by `turn`."""
-    write(spin, i, 0, add_scaled(before, turn, 1.0))
+def change_spin(spin, i, before, change):
+    """Add `change` to particle i's spin, which was `before`; `spin` is State.spin."""
+    write(spin, i, 0, add_scaled(before, change, 1.0))
 
 
 @jit
-def turn_and_book(state, scene, i, before, turn, account):
-    """Let particle i's spin change by `turn`, and enter the rotational energy gained,
-    m q [w.dw + dw.dw/2], in an account of the ledger."""
-    turn_spin(state.spin, i, before, turn)
-    gained = dot(before, turn) + 0.5 * dot(turn, turn)
-    account[1] += spin_mass_of(state.bodies, scene.effects.spin, i) * gained
+def change_spin_and_book(state, scene, i, before, change, ledger_row):
+    """Add `change` to particle i's spin, which was `before`, and enter the energy in the ledger.
+
+    The rotational energy gained is m q [w.dw + dw.dw/2]. `ledger_row` is an account of the ledger,
+    an array of translational and rotational energy.
+    """
+    change_spin(state.spin, i, before, change)
+    gained = dot(before, change) + 0.5 * dot(change, change)
+    ledger_row[1] += spin_mass_of(state.bodies, scene.effects.spin, i) * gained
 
 
 @jit
 def path_of(trajectory, i, box):
-    """Return particle i's path: position, velocity, and the time at which they hold."""
+    """Return particle i's path, (position, velocity, time): both vectors hold at that time.
+
+    `trajectory` is State.trajectory (N, 2 D + 1); `box` has as many entries as there are axes.
+    """
     return (
         read(trajectory, i, 0, box),
         read(trajectory, i, len(box), box),
@@ -234,8 +274,12 @@ def path_of(trajectory, i, box):
 
 
 @jit
-def along(path, time, gravity):
-    """Return position and velocity at `time` on a path; gravity pulls down the last axis."""
+def free_flight(path, time, gravity):
+    """Return position and velocity at `time` in free flight on a path.
+
+    The path is (position, velocity, time); `gravity` is the acceleration downwards along the last
+    axis, or None.
+    """
     position, velocity, elapsed = path[0], path[1], time - path[2]
     moved = add_scaled(position, velocity, elapsed)
     if gravity is None:
@@ -249,30 +293,37 @@ def along(path, time, gravity):
 
 @jit
 def position_and_velocity(state, scene, i, time):
-    """Return position and velocity of particle i at `time`, on the continuation of its path."""
+    """Return position and velocity of particle i at `time`, in free flight.
+
+    The position is not folded into the box.
+    """
     path = path_of(state.trajectory, i, scene.box)
-    return along(path, time, hooks.acceleration(scene.effects))
+    return free_flight(path, time, hooks.acceleration(scene.effects))
 
 
 @jit
 def position_in_box(state, scene, i, time):
-    """Return position and velocity of particle i's image in the box at `time`."""
+    """Return position and velocity of particle i's image in the box at `time`.
+
+    Under shear the image's velocity differs from the particle's.
+    """
     position, velocity = position_and_velocity(state, scene, i, time)
-    slide = hooks.sliding(scene.effects, state)
-    return fold_into_box(position, velocity, scene.box, slid(slide, time))
+    image_shift = hooks.image_shift(scene.effects, state)
+    return fold_into_box(position, velocity, scene.box, image_shift_at(image_shift, time))
 
 
 @jit
 def enter_box(state, scene, i, time):
-    """Do as `position_in_box`, and book the energy that particle i gains as another image.
+    """Return position and velocity of particle i's image in the box at `time`, to begin an event.
 
-    Every event of a particle begins here, before its path or spin changes.
+    The result is as from `position_in_box`; the energy gained by the change of image is entered in
+    the ledger. Every event of a particle begins here, before its path or spin changes.
     """
     landing, before = position_and_velocity(state, scene, i, time)
     position, velocity = position_in_box(state, scene, i, time)
-    if present(scene.effects, "observe_flight"):
-        slide = slid(hooks.sliding(scene.effects, state), time)
-        crossings = periods_outside(landing, scene.box, slide)
+    if active(scene.effects, "observe_flight"):
+        image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
+        crossings = periods_outside(landing, scene.box, image_shift)
         elapsed = time - state.trajectory[i, 2 * len(scene.box)]
         hooks.observe_flight(scene.effects, state, i, crossings, elapsed)
     gained = subtract(velocity, before)
@@ -283,16 +334,20 @@ def enter_box(state, scene, i, time):
 
 @jit
 def set_path(state, scene, i, position, velocity, time):
-    """Store particle i's trajectory."""
+    """Store particle i's trajectory: free flight from this position and velocity at `time`."""
     write(state.trajectory, i, 0, position)
     write(state.trajectory, i, len(scene.box), velocity)
     state.trajectory[i, 2 * len(scene.box)] = time
 
 
 @jit
-def set_path_and_book(state, scene, i, position, before, after, time, account):
-    """Store particle i's trajectory, whose velocity was `before`, and enter the translational
-    energy gained, m (v'^2 - v^2)/2, in an account of the ledger."""
+def set_path_and_book(state, scene, i, position, before, after, time, ledger_row):
+    """Store particle i's trajectory with the velocity `after`, and enter the energy in the ledger.
+
+    The translational energy gained since the velocity was `before` is m (v'^2 - v^2)/2; position
+    and new velocity hold at `time`. `ledger_row` is an account of the ledger, an array of
+    translational and rotational energy.
+    """
     set_path(state, scene, i, position, after, time)
     gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
-    account[0] += mass_of(state.bodies, i) * gained
+    ledger_row[0] += mass_of(state.bodies, i) * gained

@@ -1,16 +1,21 @@
 """Observables of a run, by their names in settings.
 
-To add one is to add a file with a class (see roughgas.observables.plugin), and its line in KINDS.
-An observable that nobody asks for is not made, and costs nothing.
+A new observable takes a file with a class (see roughgas.observables.plugin), and a line in
+OBSERVABLES; `register_observable` adds observables from files of users. An observable that is not
+requested is not instantiated, and costs nothing.
 """
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
+from msgspec.structs import asdict
+
 from roughgas import effects
-from roughgas.base import InputError, NeedsError, not_one_of
-from roughgas.effects.settings import schema_of_kinds
+from roughgas.base import InputError, NeedsError, short_repr, unknown_name_error
+from roughgas.base.fields import Schema, required_by, schema_of_kinds
+from roughgas.data.variables import POINT
+from roughgas.effects.user_code import check_name, check_settings, is_same_definition
 from roughgas.observables.autocorrelation import Autocorrelation, FluxAutocorrelation
 from roughgas.observables.contacts import Contacts
 from roughgas.observables.distributions import (
@@ -22,20 +27,18 @@ from roughgas.observables.distributions import (
 )
 from roughgas.observables.fields import HeatFlux, Profiles, Stress
 from roughgas.observables.flow import LocalFlow
-from roughgas.observables.layers import Layer, Pattern
+from roughgas.observables.frames import Frame, FrameSeries, System
 from roughgas.observables.plugin import (
-    Frame,
-    Function,
+    FunctionObservable,
     Observable,
-    OfSpecies,
-    Setting,
-    System,
-    Whole,
+    ObservableSettings,
+    SpeciesObservable,
 )
+from roughgas.observables.shaken_layer import Layer, Pattern
 
-__all__ = ["KINDS", "Frame", "Observable", "System"]
+__all__ = ["OBSERVABLES", "Frame", "FrameSeries", "Observable", "System"]
 
-KINDS: dict[str, type[Observable]] = {
+OBSERVABLES: dict[str, type[Observable]] = {
     "profiles": Profiles,
     "cumulants": Cumulants,
     "histograms": Histograms,
@@ -51,75 +54,105 @@ KINDS: dict[str, type[Observable]] = {
     "layer": Layer,
     "pattern": Pattern,
 }
-"""The observables by the names that they have in settings."""
-EVERY = Whole("Samples from one observation to the next.", 1, 1_000_000, 1)
-"""A setting of all of them."""
+"""The classes of observables by their names in settings."""
+_REGISTERED: set[str] = set()
 
 
-class Wanted(NamedTuple):
-    """An observable that is asked for; a new one is made for every gas."""
+def register_observable(name: str, observable_class: Any) -> None:
+    """Register a class of observables of a user under a name: see `roughgas.register_observable`.
+
+    Raises InputError for an illegal name or class: a setting without a default, an unknown effect,
+    or a variable that points have already.
+    """
+    redefined = name in _REGISTERED and is_same_definition(OBSERVABLES[name], observable_class)
+    check_name("observable", name, taken=name in OBSERVABLES and not redefined)
+    key = f"observable {name}"
+    if not (isinstance(observable_class, type) and issubclass(observable_class, Observable)):
+        raise InputError(
+            key,
+            short_repr(observable_class),
+            "be a class derived from roughgas.observables.Observable",
+        )
+    check_settings(key, observable_class.settings, ObservableSettings)
+    if missing := required_by(observable_class.settings):
+        raise InputError(f"{key}: {missing[0]}", "(nothing)", "have a default")
+    for effect in observable_class.effects:
+        without_settings = [
+            effect_name
+            for effect_name, effect_class in effects.EFFECTS.items()
+            if not required_by(effect_class.settings)
+        ]
+        if effect not in without_settings:
+            raise unknown_name_error(f"{key}: effect", effect, without_settings)
+    for variable in sorted(observable_class.variables.keys() & POINT.keys()):
+        raise InputError(f"{key}: variable", variable, "have a name that points do not have")
+    OBSERVABLES[name] = observable_class
+    _REGISTERED.add(name)
+
+
+def forget_observable(name: str) -> None:
+    """Remove a registered observable; raise InputError for any other name."""
+    if name not in _REGISTERED:
+        registered = ", ".join(sorted(_REGISTERED)) or "(none)"
+        raise InputError("observable", short_repr(name), f"be one of {registered}")
+    _REGISTERED.remove(name)
+    del OBSERVABLES[name]
+
+
+class RequestedObservable(NamedTuple):
+    """An observable that a run requests; it is instantiated for every gas."""
 
     name: str
-    every: int  # samples from one look to the next
+    every: int  # samples between observations
     make: Callable[[System], Observable]
 
 
-def wanted(
-    settings: Mapping[str, Mapping[str, Any]],
+def requested_observables(
+    settings: Mapping[str, ObservableSettings],
     functions: Mapping[str, Callable[[Frame], Any]] | None = None,
-) -> list[Wanted]:
-    """Return the observables of settings, by name, and those that are functions of a user's.
+) -> list[RequestedObservable]:
+    """Return the observables in `settings`, by name, and observables made of users' `functions`.
 
-    Raises InputError for unknown names, and for settings that are unknown or illegal.
+    `functions` are functions of a frame, by the name of their observable. Raises InputError for
+    illegal names of functions.
     """
-    found = [_wanted(name, given) for name, given in settings.items()]
+    requests = [_requested_observable(name, chosen) for name, chosen in settings.items()]
     for name, function in (functions or {}).items():
-        if name in KINDS or not name.isidentifier():
+        if name in OBSERVABLES or not name.isidentifier():
             raise InputError("observe", name, "be a name, and not that of another observable")
-        found.append(Wanted(name, 1, partial(Function, name=name, function=function)))
-    return found
+        requests.append(
+            RequestedObservable(name, 1, partial(FunctionObservable, name=name, function=function))
+        )
+    return requests
 
 
-def _wanted(name, given):
-    if name not in KINDS:
-        raise not_one_of("observables: key", name, KINDS)
-    kind, known = KINDS[name], _settings(KINDS[name])
-    for key in given:
-        if key not in known:
-            raise not_one_of(f"observables.{name}: key", key, known)
-    values = {key: _read(f"observables.{name}.{key}", given.get(key), known[key]) for key in known}
-    every = values.pop("every")
+def _requested_observable(name, settings):
+    """Return the request of the observable `name` with these settings."""
+    observable_class, arguments = OBSERVABLES[name], asdict(settings)
+    every = arguments.pop("every")
 
     def make(system):
-        if kind.spins and system.inertia is None:
+        """Return the observable of a gas; raise NeedsError if it needs spins and nothing spins."""
+        if observable_class.needs_spin and system.inertia is None:
             raise NeedsError(f"observables.{name}", "spin")
-        if system.species and not _sums_contacts(kind):
-            return OfSpecies(kind, system, values)
-        return kind(system, **values)
+        if system.species and not _sums_contacts(observable_class):
+            return SpeciesObservable(observable_class, system, arguments)
+        return observable_class(system, **arguments)
 
-    return Wanted(name, every, make)
-
-
-def _sums_contacts(kind: type[Observable]) -> bool:
-    """Return whether an observable rests on sums over contacts, which have no parts by species."""
-    return any(effects.KINDS[name].hooks.sums for name in kind.effects)
+    return RequestedObservable(name, every, make)
 
 
-def _settings(kind: type[Observable]) -> dict[str, Setting]:
-    return {**kind.settings, "every": EVERY}
+def _sums_contacts(observable_class: type[Observable]) -> bool:
+    """Return whether an observable needs sums over contacts, which cover all species at once."""
+    return any(effects.EFFECTS[name].hooks.sums for name in observable_class.effects)
 
 
-def _read(key, value, setting):
-    return setting.default if value is None else setting.read(key, value)
+def effects_of(names: Iterable[str]) -> list[str]:
+    """Return the names of the effects that the observables `names` need; these need no settings."""
+    return [effect for name in names for effect in OBSERVABLES[name].effects]
 
 
-def effects_of(names: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the settings of the effects that observables of these names need."""
-    kinds = (KINDS[name] for name in names if name in KINDS)
-    return {effect: {} for kind in kinds for effect in kind.effects}
-
-
-def schema() -> dict[str, Any]:
-    """Return what `observables` may hold in settings, as a JSON schema; null takes one away."""
+def schema() -> Schema:
+    """Return the JSON schema of `observables` in settings; null removes an observable."""
     description = "Observables of a run; one that is not listed costs nothing."
-    return schema_of_kinds(description, KINDS, _settings)
+    return schema_of_kinds(description, OBSERVABLES)

@@ -1,112 +1,155 @@
-"""How long velocities and spins are remembered, and stress and heat flux.
+"""Autocorrelation of velocities, spins, stress and heat flux.
 
     C_v(t) = <V(t0) . V(t0 + t)>/D,    C_w(t) = <w(t0) . w(t0 + t)>/(2 D - 3),
 
-over all particles and all looks t0. The coefficient of self-diffusion is the integral of C_v over
-time, that of the angle the integral of C_w/a^2: M. S. Green, J. Chem. Phys. 22, 398 (1954); R.
-Kubo, J. Phys. Soc. Jpn. 12, 570 (1957). In a cooling gas velocities are in units of the present
-E_trans at either time, which is 1, and time counts in collisions per particle.
+over all particles and all observations t0. The coefficient of self-diffusion is the integral of C_v
+over time, the rotational diffusion coefficient the integral of C_w/a^2: M. S. Green, J. Chem. Phys.
+22, 398 (1954); R. Kubo, J. Phys. Soc. Jpn. 12, 570 (1957). In a cooling gas E_trans is 1 at either
+time, the unit of velocities, and time is counted in collisions per particle.
 
 In a gas in equilibrium viscosity and conductivity are such integrals, too,
 
     viscosity = (V/T) int <P_xy(0) P_xy(t)> dt,    conductivity = (V/T^2) int <q_x(0) q_x(t)> dt.
 
-Here P_xy stands for all of the traceless symmetric part of the pressure tensor, <P : P>/[(D - 1)
-(D + 2)], and q_x for the heat flux, <q.q>/D. Both are means over the time from one look to the
-next: the kinetic parts, sum m v v and sum (m v^2 + m q a^2 w^2) v/2, over V, of its ends, and what
-all contacts in between have carried (effects/contacts.py). Of such means the integral up to t by
-the trapezium rule is half of the slope of the mean square of int P_xy dt (E. Helfand, Phys. Rev.
-119, 1 (1960)). Looks must be dense: h apart, with a memory of tau, they give (h/tau)^2/12 too much.
-T is that of N - 1 particles, since momentum is conserved, and both get the factor N/(N - 1). Of a
-mixture there is the viscosity only: its heat flux has a part that diffusion carries.
+Here P_xy stands for the full traceless symmetric pressure tensor, <P : P>/[(D - 1) (D + 2)], and
+q_x for the heat flux, <q.q>/D. Both are means over the interval between two observations: the
+kinetic contributions, sum m v v and sum (m v^2 + m q a^2 w^2) v/2, over V, averaged over its ends,
+and the transport by all contacts in the interval (effects/contacts.py). With such means the
+integral up to t by the trapezium rule is half of the slope of the mean square of int P_xy dt (E.
+Helfand, Phys. Rev. 119, 1 (1960)). Observations must be dense: an interval h, with a memory tau,
+overestimates by (h/tau)^2/12. T is computed with N - 1 particles, since momentum is conserved, and
+both integrals get the factor N/(N - 1). For mixtures only the viscosity is computed: their heat
+flux has a contribution of diffusion.
 
-All of these depend on the box, since what is longer than it is not there; in two dimensions without
-end, as the logarithm of its width: B. J. Alder & T. E. Wainwright, Phys. Rev. A 1, 18 (1970).
+All results depend on the box, which limits the wavelengths of flows; in two dimensions they grow
+without bound, as the logarithm of its width: B. J. Alder & T. E. Wainwright, Phys. Rev. A 1, 18
+(1970).
+
+Arrays (k, ...) are of the k instants of a FrameSeries.
 """
 
 from collections import deque
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Annotated
 
 import numpy as np
 
 from roughgas.base import InputError
+from roughgas.base.fields import whole
 from roughgas.data.variables import SPIN, TIME, Variable
 from roughgas.effects.contacts import HEAT, STRESSES
-from roughgas.observables.plugin import (
-    IN_THIS_BOX,
-    Frame,
-    Observable,
-    Setting,
-    System,
-    Values,
-    Whole,
-)
+from roughgas.observables.averages import NamedArrays
+from roughgas.observables.fields import energy_flux, momentum_flux
+from roughgas.observables.frames import FrameSeries, System
+from roughgas.observables.plugin import IN_THIS_BOX, Observable, ObservableSettings, columnwise
 
-SQUARED = "a^2 T^-2"
-VELOCITY, OF_SPIN = "velocity_autocorrelation", "spin_autocorrelation"
+SQUARED_VELOCITY = "a^2 T^-2"
+VELOCITY_NAME, SPIN_NAME = "velocity_autocorrelation", "spin_autocorrelation"
 
 
-STRESS, HEAT_FLUX = "stress_autocorrelation", "heat_flux_autocorrelation"
+STRESS_NAME, HEAT_FLUX_NAME = "stress_autocorrelation", "heat_flux_autocorrelation"
 VISCOSITY, CONDUCTIVITY = "viscosity_until", "conductivity_until"
-ALONG = ("delay",)
-DELAY = Variable("time from one observation to another", TIME, ALONG)
-DELAYS = {"delays": Whole("Number of times, the first one 0.", 2, 10_000, 50)}
+DELAY_DIMS = ("delay",)
+DELAY = Variable("time from one observation to another", TIME, DELAY_DIMS)
+
+
+class DelaySettings(ObservableSettings, frozen=True, kw_only=True):
+    """Settings of `autocorrelation` and of `flux_autocorrelation`."""
+
+    delays: Annotated[int, whole(2, 10_000, "Number of times, the first one 0.")] = 50
 
 
 class Autocorrelation(Observable):
     """Autocorrelation of velocities and of spins, after 0, 1, 2, ... observations."""
 
-    alike = True
+    single_species = True
 
-    settings: ClassVar[Mapping[str, Setting]] = DELAYS
-    relaxations, of_flow = 96.0, True
+    settings = DelaySettings
+    relaxations, depends_on_flow = 96.0, True
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
-        VELOCITY: Variable(f"autocorrelation of a velocity component{IN_THIS_BOX}", SQUARED, ALONG),
-        OF_SPIN: Variable("autocorrelation of a spin component", SQUARED, ALONG, when=(SPIN,)),
+        VELOCITY_NAME: Variable(
+            f"autocorrelation of a velocity component{IN_THIS_BOX}", SQUARED_VELOCITY, DELAY_DIMS
+        ),
+        SPIN_NAME: Variable(
+            "autocorrelation of a spin component", SQUARED_VELOCITY, DELAY_DIMS, when=(SPIN,)
+        ),
     }
 
     def __init__(self, system: System, delays: int) -> None:
+        """Keep velocities and spins of earlier observations; `delays` is their number."""
         super().__init__(system)
         self._path: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=delays)
         self.coordinates = {"delay": np.arange(delays) * system.interval}
 
-    def look(self, frame: Frame) -> Values:
-        """Return both since earlier looks, NaN where there was none."""
-        self._path.appendleft((frame.thermal_velocity.copy(), frame.thermal_spin.copy()))
-        found = np.full((2, self._path.maxlen or 0), np.nan)
-        for k, before in enumerate(self._path):
-            for row, then, now in zip(found, before, self._path[0], strict=True):
-                row[k] = np.mean(then * now)
-        return {VELOCITY: found[0], OF_SPIN: found[1]}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return mean products with earlier observations, of velocities and of spins, (k, delays).
 
-    def combine(self, means: Values) -> Values:
-        """Return both; that of spins where there are any."""
+        They are in a^2/T^2, per component. NaN for delays that exceed the number of earlier
+        observations.
+        """
+        present = frames.thermal_velocity, frames.thermal_spin
+        before = [*zip(*reversed(self._path), strict=True)] or [(), ()]
+        delays = self._path.maxlen or 0
+        products = [
+            _mean_products(np.array([*earlier, *values]), frames.instants, delays)
+            for earlier, values in zip(before, present, strict=True)
+        ]
+        self._path.extendleft(zip(*(values[-delays:].copy() for values in present), strict=True))
+        return {VELOCITY_NAME: products[0], SPIN_NAME: products[1]}
+
+    @columnwise
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return the mean autocorrelation of velocities, and of spins if particles spin."""
         if self.system.inertia is not None:
             return means
-        return {VELOCITY: means[VELOCITY]}
+        return {VELOCITY_NAME: means[VELOCITY_NAME]}
+
+
+def _mean_products(path, instants, delays):
+    """Return mean products (instants, delays) of the last instants of a path with earlier instants.
+
+    `path` is (observations, N, ...), vectors of the particles; `instants` and `delays` are numbers
+    of observations. NaN for delays that exceed the path.
+    """
+    path = path.reshape(len(path), -1)
+    mean_products = np.full((instants, delays), np.nan)
+    for delay in range(min(delays, len(path))):
+        first = max(len(path) - instants, delay)
+        products = path[first:] * path[first - delay : len(path) - delay]
+        mean_products[first - len(path) :, delay] = products.mean(axis=1)
+    return mean_products
 
 
 class FluxAutocorrelation(Observable):
     """Autocorrelation of stress and heat flux, and the coefficients that are its integrals."""
 
     effects = ("contact_stress", "contact_heat")
-    settings: ClassVar[Mapping[str, Setting]] = DELAYS
+    settings = DelaySettings
     relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
-        STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", "m^2 a^(4-D) T^-4", ALONG),
-        HEAT_FLUX: Variable("V <q_x(0) q_x(t)> of the heat flux", "m^2 a^(6-D) T^-6", ALONG),
+        STRESS_NAME: Variable(
+            "V <P_xy(0) P_xy(t)> of the pressure tensor", "m^2 a^(4-D) T^-4", DELAY_DIMS
+        ),
+        HEAT_FLUX_NAME: Variable(
+            "V <q_x(0) q_x(t)> of the heat flux", "m^2 a^(6-D) T^-6", DELAY_DIMS
+        ),
         VISCOSITY: Variable(
-            f"shear viscosity, of memory up to this delay{IN_THIS_BOX}", "m a^(2-D) T^-1", ALONG
+            f"shear viscosity, of memory up to this delay{IN_THIS_BOX}",
+            "m a^(2-D) T^-1",
+            DELAY_DIMS,
         ),
         CONDUCTIVITY: Variable(
-            f"conductivity, of memory up to this delay{IN_THIS_BOX}", "a^(2-D) T^-1", ALONG
+            f"conductivity, of memory up to this delay{IN_THIS_BOX}", "a^(2-D) T^-1", DELAY_DIMS
         ),
     }
 
     def __init__(self, system: System, delays: int) -> None:
+        """Keep the fluxes of earlier observations; `delays` is their number.
+
+        Raises InputError for a gas that cools, is sheared, or is not in a periodic box.
+        """
         super().__init__(system)
         if system.cooling or system.shear_rate or not all(system.periodic):
             legal = "be of a gas at rest in a periodic box that does not cool"
@@ -115,43 +158,75 @@ class FluxAutocorrelation(Observable):
         self._path: tuple[deque[np.ndarray], ...] = deque(maxlen=delays), deque(maxlen=delays)
         self.coordinates = {"delay": np.arange(delays) * system.interval}
 
-    def look(self, frame: Frame) -> Values:
-        """Return both since earlier looks, NaN where there was none, and the temperature."""
-        system, V = self.system, frame.velocity
-        D, volume, before = system.dimension, system.volume, self._kinetic
-        self._kinetic = V.T @ (frame.mass[:, None] * V), frame.energy @ V
-        temperature = np.trace(self._kinetic[0]) / (D * (system.particles - 1))
-        found = np.full((2, self._path[0].maxlen or 0), np.nan)
-        if before is not None:
-            rates = [frame.of_pairs(names).sum(axis=(0, 1)) for names in (STRESSES, HEAT)]
-            contacts = rates[0].reshape(3, 3)[:D, :D], rates[1][:D]
-            stress, heat = (
-                (one + other) / 2.0 + carried
-                for one, other, carried in zip(before, self._kinetic, contacts, strict=True)
-            )
-            stress = (stress + stress.T) / 2.0 - np.eye(D) * np.trace(stress) / D
-            numbers = (D - 1) * (D + 2), D
-            for row, path, flux, number in zip(
-                found, self._path, (stress.ravel(), heat), numbers, strict=True
-            ):
-                path.appendleft(flux)
-                row[: len(path)] = np.array(path) @ flux / (number * volume)
-        return {STRESS: found[0], HEAT_FLUX: found[1], "temperature": np.array(temperature)}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return mean products with earlier fluxes, (k, delays), and the temperature, (k,).
 
-    def combine(self, means: Values) -> Values:
-        """Return both, and their integrals; of a mixture those of the stress."""
-        free = (self.system.particles - 1) / self.system.particles
+        The fluxes are stress and heat flux. NaN for delays that exceed the number of earlier
+        observations.
+        """
+        system, D = self.system, self.system.dimension
+        kinetic = momentum_flux(frames), energy_flux(frames)  # of a gas without mean flow
+        rates = [frames.pair_rates(names).sum(axis=(1, 2)) for names in (STRESSES, HEAT)]
+        contacts = rates[0].reshape(-1, 3, 3)[:, :D, :D], rates[1][:, :D]
+        products = np.full((2, frames.instants, self._path[0].maxlen or 0), np.nan)
+        for instant, (stress, heat, *collisional) in enumerate(
+            zip(*kinetic, *contacts, strict=True)
+        ):
+            before, self._kinetic = self._kinetic, (stress, heat)
+            if before is not None:
+                fluxes = self._mean_fluxes(before, self._kinetic, collisional)
+                products[:, instant] = self._products(fluxes)
+        temperature = np.trace(kinetic[0], axis1=1, axis2=2) / (D * (system.particles - 1))
+        return {STRESS_NAME: products[0], HEAT_FLUX_NAME: products[1], "temperature": temperature}
+
+    def _mean_fluxes(self, before, present, collisional):
+        """Return means since the previous observation of traceless stress and heat flux, times V.
+
+        `before` and `present` are kinetic stress and heat flux at both ends, `collisional` the
+        transport by contacts per T, all times V. The stress is flattened, (D^2,); the heat flux is
+        (D,).
+        """
+        D = self.system.dimension
+        stress, heat = (
+            (initial + final) / 2.0 + collisional_flux
+            for initial, final, collisional_flux in zip(before, present, collisional, strict=True)
+        )
+        stress = (stress + stress.T) / 2.0 - np.eye(D) * np.trace(stress) / D
+        return stress.ravel(), heat
+
+    def _products(self, fluxes):
+        """Return mean products (2, delays) with present and earlier `fluxes`; NaN beyond these.
+
+        `fluxes` are the stress and the heat flux of `_mean_fluxes`; the rows are in this order.
+        """
+        D, volume = self.system.dimension, self.system.volume
+        products = np.full((2, self._path[0].maxlen or 0), np.nan)
+        component_counts = (D - 1) * (D + 2), D
+        for row, path, flux, component_count in zip(
+            products, self._path, fluxes, component_counts, strict=True
+        ):
+            path.appendleft(flux)
+            row[: len(path)] = np.array(path) @ flux / (component_count * volume)
+        return products
+
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return autocorrelations and their integrals over time; for a mixture of the stress only.
+
+        The integrals are the viscosity and the conductivity, (delays,).
+        """
+        momentum_factor = (self.system.particles - 1) / self.system.particles
         T, step = means["temperature"], self.system.interval
-        units = {STRESS: (VISCOSITY, T)}
+        units = {STRESS_NAME: (VISCOSITY, T)}
         if not self.system.species:
-            units[HEAT_FLUX] = CONDUCTIVITY, T**2
-        found = {name: means[name] / free for name in units}
-        until = {
-            integral: _integral(found[n]) * step / unit for n, (integral, unit) in units.items()
+            units[HEAT_FLUX_NAME] = CONDUCTIVITY, T**2
+        correlations = {name: means[name] / momentum_factor for name in units}
+        integrals = {
+            integral: _integral(correlations[name]) * step / unit
+            for name, (integral, unit) in units.items()
         }
-        return found | until
+        return correlations | integrals
 
 
 def _integral(values):
-    """Return the integral from the first value to each, by the trapezium rule, in steps."""
+    """Return integrals of `values` from the first to each, by the trapezium rule, per step."""
     return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) / 2.0)])

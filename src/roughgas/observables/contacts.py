@@ -1,9 +1,11 @@
-"""Contacts: how often particles touch, and the energy that it takes; of pairs of species, too.
+"""Frequency of contacts, and the energy that they dissipate; also by pairs of species.
 
-    nu = 2 (contacts)/(N t),    nu_kl = (contacts of k with l)/(N_k t), twice those if k = l,
+    nu = 2 (contacts)/(N t),    nu_kl = (contacts of k with l)/(N_k t), twice as many if k = l,
 
-so that the sum of nu_kl over l is how often a particle of species k has a contact. All contacts of
+so that the sum of nu_kl over l is the contact frequency of a particle of species k. All contacts of
 pairs count. In equilibrium nu_kl is theory.mixture_frequency.
+
+Arrays (k, ...) are of the k instants of a FrameSeries.
 """
 
 from collections.abc import Mapping
@@ -12,7 +14,9 @@ import numpy as np
 
 from roughgas.data.variables import ENERGY, MIXTURE, RATE, Variable
 from roughgas.effects.contacts import COUNTS
-from roughgas.observables.plugin import PAIR, SUFFIX, Frame, Observable, Values
+from roughgas.observables.averages import NamedArrays
+from roughgas.observables.frames import FrameSeries
+from roughgas.observables.plugin import PAIR, SUFFIX, Observable
 
 FREQUENCY, LOSS = "contact_frequency", "contact_loss"
 
@@ -35,19 +39,23 @@ class Contacts(Observable):
         ),
     }
 
-    def look(self, frame: Frame) -> Values:
-        """Return the contacts, and the energy that they take, per T: (species, species) each."""
-        contacts, losses = np.moveaxis(2.0 * frame.of_pairs(COUNTS), -1, 0)  # each has two partners
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return contacts and dissipated energy per T, (k, species, species) each.
+
+        Each contact counts for both partners; so does its energy, in m a^2/T^2.
+        """
+        sums = 2.0 * frames.pair_rates(COUNTS)  # a contact has two partners
+        contacts, losses = np.moveaxis(sums, -1, 0)
         return {"contacts": contacts, "losses": losses}
 
-    def combine(self, means: Values) -> Values:
-        """Return frequencies and losses."""
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return contact frequencies per particle, in 1/T, and energy losses per contact."""
         contacts, losses, system = means["contacts"], means["losses"], self.system
-        found = {
+        results = {
             FREQUENCY: contacts.sum() / system.particles,
             LOSS: losses.sum() / contacts.sum(),
         }
         if system.species:
-            numbers = np.array([[one.particles] for one in system.species])
-            found |= {FREQUENCY + SUFFIX: contacts / numbers, LOSS + SUFFIX: losses / contacts}
-        return found
+            numbers = np.array([[group.particles] for group in system.species])
+            results |= {FREQUENCY + SUFFIX: contacts / numbers, LOSS + SUFFIX: losses / contacts}
+        return results

@@ -1,147 +1,167 @@
-"""Distributions of velocities, spins and distances, and how far particles get.
+"""Distributions of velocities, spins and distances, and mean square displacements.
 
 V is the velocity without the mean flow of a sheared gas, w the spin. Averages are over all
-particles and looks.
+particles and observations.
 
-Cumulants are how far distributions are from Gaussian ones, coefficients of the first Sonine
-polynomials:
+Cumulants measure the deviation of distributions from Gaussians; they are the coefficients of the
+first Sonine polynomials:
 
     a20 = D <V^4>/[(D + 2) <V^2>^2] - 1,    a02 = n <w^4>/[(n + 2) <w^2>^2] - 1,  n = 2 D - 3.
 
 They vanish in equilibrium. A. Santos, G. M. Kremer & M. dos Santos, Phys. Fluids 23, 030604 (2011).
-In a cooling gas, whose E_trans each look takes for 1, a20 is too small by 2/(D N).
+In a cooling gas a20 is too small by 2/(D N), as E_trans is 1 in each observation.
 
-Histograms are of single components, each divided by the root of its mean square over all particles
-and components at the same look, so that a Gaussian is exp(-c^2/2)/sqrt(2 pi), whatever the energy.
+Histograms are of single components, divided by the root mean square over all particles and
+components of the same observation, so that a Gaussian is exp(-c^2/2)/sqrt(2 pi) at any energy.
 Values are densities: summed over the bins, times their width, they give 1 less the share beyond the
-last bin. In a sheared gas the mean spin is subtracted, too. Of stretched tails: T. P. C. van Noije
+last bin. In a sheared gas the mean spin is subtracted, too. On stretched tails: T. P. C. van Noije
 & M. H. Ernst, Granular Matter 1, 57 (1998).
 
-Correlations are how velocities and spins depend on each other:
+Correlations of velocities and spins:
 
     a11 = <V^2 w^2>/(<V^2> <w^2>) - 1,    alignment = 3 <(V.w)^2>/<V^2 w^2> - 1  (spheres),
 
-and the mean of cos^2 of the angle between V and w, which is 1/3 if spheres fly in no preferred
-direction: N. V. Brilliantov, T. Pöschel, W. T. Kranz & A. Zippelius, Phys. Rev. Lett. 98, 128001
-(2007). The spin of a disk is always across its velocity.
+and the mean of cos^2 of the angle between V and w, which is 1/3 if spheres have no preferred
+direction of flight: N. V. Brilliantov, T. Pöschel, W. T. Kranz & A. Zippelius, Phys. Rev. Lett. 98,
+128001 (2007). The spin of a disk is always perpendicular to its velocity.
 
-Pair correlation is how likely particles are at a distance from each other,
+Pair correlation is the probability of pairs at a distance, relative to independent particles,
 
     g(r) = <pairs at a distance in [r, r + dr)> / (N (N - 1)/2 * V_shell/V),
 
-1 where particles do not know of each other, and 0 below the diameter 2a. Of two species it is that
-of the N_k N_l pairs of one with the other, 0 below a_k + a_l. A cooling gas is looked at
-in the moment of a collision; the pair that collides does not count. Its value at contact, chi,
-is that of a parabola through g just outside the diameter. In equilibrium chi is
-theory.contact_value: D. Henderson, Mol. Phys. 30, 971 (1975); N. F. Carnahan & K. E. Starling,
-J. Chem. Phys. 51, 635 (1969). M. P. Allen & D. J. Tildesley, Computer Simulation of Liquids (2017),
-section 2.6.
+1 for independent particles, and 0 below the diameter 2a. For two species it counts the N_k N_l
+pairs of unlike particles, and is 0 below a_k + a_l. A cooling gas is observed at the instant of a
+collision; the colliding pair does not count. The value at contact, chi, is extrapolated by a
+parabola through g just outside the diameter. In equilibrium chi is theory.contact_value: D.
+Henderson, Mol. Phys. 30, 971 (1975); N. F. Carnahan & K. E. Starling, J. Chem. Phys. 51, 635
+(1969). M. P. Allen & D. J. Tildesley, Computer Simulation of Liquids (2017), section 2.6.
 
-Mean square displacement is how far particles get in a given time,
+Mean square displacement in a given time,
 
     MSD_k(t) = <(x_k(t0 + t) - x_k(t0))^2>, by component,
 
-over all particles and all looks t0. It is <v_k^2> t^2 where t is short against the time between
+over all particles and all observations t0. It is <v_k^2> t^2 if t is short against the time between
 contacts, and 2 D t in a fluid at long times: A. Einstein, Ann. Phys. 322, 549 (1905). In a sheared
-gas the component along the flow is left out. The kernel counts the crossings of periodic boundaries
-(effects/paths.py): displacements are exact, however far apart the observations are.
+gas the component along the flow is omitted. The kernel counts the crossings of periodic boundaries
+(effects/paths.py): displacements are exact for any interval between observations.
+
+Arrays (k, ...) are of the k instants of a FrameSeries.
 """
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from typing import ClassVar
+from typing import Annotated
 
 import numpy as np
 
 from roughgas.base import InputError
+from roughgas.base.fields import number, whole
 from roughgas.data.variables import LENGTH, SPIN, TIME, Variable
-from roughgas.effects.settings import Number
-from roughgas.observables.plugin import (
-    IN_THIS_BOX,
-    Frame,
-    Group,
-    Observable,
-    Setting,
-    System,
-    Values,
-    Whole,
-)
+from roughgas.observables.averages import NamedArrays
+from roughgas.observables.frames import FrameSeries, SpeciesGroup, System
+from roughgas.observables.plugin import IN_THIS_BOX, Observable, ObservableSettings, columnwise
 from roughgas.theory.closed_forms import VOLUME
 
 
 class Cumulants(Observable):
     """Fourth cumulants of velocities and of spins."""
 
-    alike = True
-    relaxations, beds = 96.0, False
+    single_species = True
+    relaxations, valid_in_beds = 96.0, False
     variables: Mapping[str, Variable] = {
         "a20": Variable("cumulant D <V^4>/[(D + 2) <V^2>^2] - 1 of velocities"),
         "a02": Variable("cumulant n <w^4>/[(n + 2) <w^2>^2] - 1 of spins", when=(SPIN,)),
     }
 
-    def look(self, frame: Frame) -> Values:
-        """Return second and fourth moments."""
-        V2 = (frame.thermal_velocity**2).sum(axis=1)
-        w2 = (frame.thermal_spin**2).sum(axis=1)
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return second and fourth moments of velocities and of spins, (k,) each."""
+        V2 = (frames.thermal_velocity**2).sum(axis=-1)
+        w2 = (frames.thermal_spin**2).sum(axis=-1)
         moments = {"V2": V2, "V4": V2**2, "w2": w2, "w4": w2**2}
-        return {name: values.mean() for name, values in moments.items()}
+        return {name: values.mean(axis=-1) for name, values in moments.items()}
 
-    def combine(self, means: Values) -> Values:
-        """Return the cumulants."""
+    # not columnwise: the square of a number alone and in an array may differ in its last bit
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return the cumulants a20 and, where particles spin, a02, of the `means` of moments."""
         D = self.system.dimension
-        found = {"a20": _cumulant(means["V2"], means["V4"], D)}
+        results = {"a20": _cumulant(means["V2"], means["V4"], D)}
         if self.system.inertia is not None:
-            found["a02"] = _cumulant(means["w2"], means["w4"], 2 * D - 3)
-        return found
+            results["a02"] = _cumulant(means["w2"], means["w4"], 2 * D - 3)
+        return results
 
 
 def _cumulant(second, fourth, components):
+    """Return the fourth cumulant of vectors with a number of components, from their moments.
+
+    `second` and `fourth` are the means of the square and of the fourth power of the length.
+    """
     return components * fourth / ((components + 2) * second**2) - 1.0
 
 
-ALONG = "reduced_velocity"
+REDUCED_VELOCITY = "reduced_velocity"
+
+
+class HistogramsSettings(ObservableSettings, frozen=True, kw_only=True):
+    """Settings of `histograms`."""
+
+    bins: Annotated[int, whole(2, 10_000, "Number of bins.")] = 60
+    reach: Annotated[float, number("(0, 1000]", "End of the last bin, in root mean squares.")] = 6.0
 
 
 class Histograms(Observable):
     """Distributions of the components of velocities and of spins."""
 
-    alike = True
-    settings: ClassVar[Mapping[str, Setting]] = {
-        "bins": Whole("Number of bins.", 2, 10_000, 60),
-        "reach": Number("End of the last bin, in root mean squares.", "(0, 1000]", 6.0),
-    }
+    single_species = True
+    settings = HistogramsSettings
     relaxations = 96.0
     variables: Mapping[str, Variable] = {
-        ALONG: Variable("middle of a bin, in root mean squares", "1", (ALONG,)),
+        REDUCED_VELOCITY: Variable(
+            "middle of a bin, in root mean squares", "1", (REDUCED_VELOCITY,)
+        ),
         "component": Variable("component of a vector", "", ("component",), "str"),
-        "velocity_histogram": Variable("distribution of velocities", "1", (ALONG, "component")),
-        "spin_histogram": Variable("distribution of spins", "1", (ALONG,), when=(SPIN,)),
+        "velocity_histogram": Variable(
+            "distribution of velocities", "1", (REDUCED_VELOCITY, "component")
+        ),
+        "spin_histogram": Variable("distribution of spins", "1", (REDUCED_VELOCITY,), when=(SPIN,)),
     }
 
     def __init__(self, system: System, bins: int, reach: float) -> None:
+        """Divide [-reach, reach], in root mean squares, into `bins` bins."""
         super().__init__(system)
         self._edges = np.linspace(-reach, reach, bins + 1)
         middle = (self._edges[1:] + self._edges[:-1]) / 2.0
-        self.coordinates = {ALONG: middle, "component": system.axes}
+        self.coordinates = {REDUCED_VELOCITY: middle, "component": system.axes}
 
-    def look(self, frame: Frame) -> Values:
-        """Return the histograms of a frame."""
-        velocity = _reduced(frame.thermal_velocity)
-        columns = [self._histogram(column) for column in velocity.T]
-        found = {"velocity_histogram": np.array(columns).T}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return the densities of the components of velocities and spins in each frame.
+
+        (k, bins, D) of velocities, (k, bins) of all components of spins.
+        """
+        velocity = _reduced(frames.thermal_velocity)
+        columns = [self._histograms(velocity[..., axis]) for axis in range(self.system.dimension)]
+        results = {"velocity_histogram": np.stack(columns, axis=-1)}
         if self.system.inertia is not None:
-            found["spin_histogram"] = self._histogram(_reduced(frame.thermal_spin))
-        return found
+            spin = _reduced(frames.thermal_spin)
+            results["spin_histogram"] = self._histograms(spin.reshape(len(spin), -1))
+        return results
 
-    def _histogram(self, values: np.ndarray) -> np.ndarray:
-        counts, edges = np.histogram(values, self._edges)
-        return counts / (values.size * np.diff(edges))
+    def _histograms(self, values: np.ndarray) -> np.ndarray:
+        """Return the densities (k, bins) of values (k, n); the last bin includes its upper edge."""
+        edges, (instants, number) = self._edges, values.shape
+        bins = len(edges) - 1
+        bin_index = np.searchsorted(edges, values, side="right") - (values == edges[-1])
+        bin_index += (bins + 2) * np.arange(instants)[
+            :, None
+        ]  # outer bins for values beyond the edges
+        counts = np.bincount(bin_index.ravel(), minlength=instants * (bins + 2))
+        inside = counts.reshape(instants, -1)[:, 1:-1]
+        return inside / (number * np.diff(edges))
 
 
 def _reduced(values):
-    """Return components in terms of their root mean square; 0 where all are 0."""
-    scale = np.sqrt(np.mean(values**2))
-    return values / scale if scale > 0.0 else values
+    """Return components (k, N, ...) over their root mean square at each instant; 0 if all are 0."""
+    scale = np.sqrt(np.mean((values**2).reshape(len(values), -1), axis=1))
+    return values / np.where(scale > 0.0, scale, 1.0)[:, None, None]
 
 
 SPHERES = "spheres"
@@ -150,8 +170,8 @@ SPHERES = "spheres"
 class SpinCorrelation(Observable):
     """Correlation of velocities and spins, in magnitude and, for spheres, in direction."""
 
-    spins = True
-    alike = True
+    needs_spin = True
+    single_species = True
     relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "a11": Variable("<V^2 w^2>/(<V^2> <w^2>) - 1 of velocities and spins"),
@@ -159,41 +179,65 @@ class SpinCorrelation(Observable):
         "cos2_angle": Variable("mean of cos^2 of the angle between V and w", when=(SPHERES,)),
     }
 
-    def look(self, frame: Frame) -> Values:
-        """Return mixed moments."""
-        V, w = frame.thermal_velocity, frame.thermal_spin
-        V2, w2 = (V**2).sum(axis=1), (w**2).sum(axis=1)
-        found = {"V2": V2.mean(), "w2": w2.mean(), "V2w2": (V2 * w2).mean()}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return moments of velocities and spins, and the mean cos^2 of their angle, (k,)."""
+        V, w = frames.thermal_velocity, frames.thermal_spin
+        V2, w2 = (V**2).sum(axis=-1), (w**2).sum(axis=-1)
+        moments = {"V2": V2, "w2": w2, "V2w2": V2 * w2}
         if self.system.dimension == 3:
-            square, both = (V * w).sum(axis=1) ** 2, V2 * w2
-            angle = square[both > 0.0] / both[both > 0.0]
-            found |= {"Vw": square.mean(), "angle": angle.mean() if angle.size else np.nan}
-        return found
+            moments["Vw"] = (V * w).sum(axis=-1) ** 2
+        averages = {name: values.mean(axis=-1) for name, values in moments.items()}
+        if self.system.dimension == 3:
+            averages["angle"] = _mean_ratios(moments["Vw"], moments["V2w2"])
+        return averages
 
-    def combine(self, means: Values) -> Values:
-        """Return the correlations."""
-        found = {"a11": means["V2w2"] / (means["V2"] * means["w2"]) - 1.0}
+    @columnwise
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return a11 and, for spheres, alignment and mean cos^2, of the `means` of moments."""
+        results = {"a11": means["V2w2"] / (means["V2"] * means["w2"]) - 1.0}
         if self.system.dimension == 3:
-            found["alignment"] = 3.0 * means["Vw"] / means["V2w2"] - 1.0
-            found["cos2_angle"] = means["angle"]
-        return found
+            results["alignment"] = 3.0 * means["Vw"] / means["V2w2"] - 1.0
+            results["cos2_angle"] = means["angle"]
+        return results
+
+
+def _mean_ratios(numerators: np.ndarray, denominators: np.ndarray) -> np.ndarray:
+    """Return the means (k,) of ratios of numbers (k, N), over denominators that are not 0."""
+    positive = denominators > 0.0
+    if positive.all():
+        means: np.ndarray = (numerators / denominators).mean(axis=-1)
+        return means
+    ratios = [
+        numerator[valid] / denominator[valid]
+        for numerator, denominator, valid in zip(numerators, denominators, positive, strict=True)
+    ]
+    return np.array([values.mean() if values.size else np.nan for values in ratios])
 
 
 DIAMETER = 2.0
-GRAZE = 1e-9  # of a: contacts that roundings have pushed together count as contacts
-REACH = 10.0  # a, or half of the box
-FITTED = 0.6  # a: the distance from contact over which g is taken for a parabola
-ROWS = 64  # particles that are compared with others at once
+CONTACT_TOLERANCE = 1e-9  # in a; rounding may let particles in contact overlap
+DEFAULT_REACH = 10.0  # in a; half of the box if that is smaller
+FIT_RANGE = 0.6  # in a: range of distances from contact in the fit of a parabola to g
+
+
+Reach = Annotated[
+    float,
+    number("(0, inf)", f"Largest distance, in a; {DEFAULT_REACH:g} if the box is wide enough."),
+]
+
+
+class PairCorrelationSettings(ObservableSettings, frozen=True, kw_only=True):
+    """Settings of `pair_correlation`."""
+
+    bins: Annotated[int, whole(1, 1000, "Number of bins in a diameter.")] = 20
+    reach: Reach | None = None
 
 
 class PairCorrelation(Observable):
     """The pair correlation function g(r), and its value at contact."""
 
-    alike = pairs = True
-    settings: ClassVar[Mapping[str, Setting]] = {
-        "bins": Whole("Number of bins in a diameter.", 1, 1000, 20),
-        "reach": Number(f"Largest distance, in a; {REACH:g} if the box is wide enough."),
-    }
+    single_species = pairwise = True
+    settings = PairCorrelationSettings
     relaxations = 24.0
     variables: Mapping[str, Variable] = {
         "distance": Variable("distance of two centres, middle of a bin", LENGTH, ("distance",)),
@@ -202,40 +246,50 @@ class PairCorrelation(Observable):
     }
 
     def __init__(self, system: System, bins: int, reach: float | None) -> None:
+        """Divide distances up to `reach` (particle radii a) into bins, `bins` of them a diameter.
+
+        Raises InputError unless the box is periodic, and `reach` at most half of it.
+        """
         super().__init__(system)
         lengths = [length for length in system.box if length is not None]
         if not all(system.periodic):
             legal = "not be given: the box must be periodic along all axes"
             raise InputError("observables.pair_correlation", "in this box", legal)
-        most = min(lengths) / 2.0
-        if reach is not None and not DIAMETER < reach <= most:
-            legal = f"be in (2, {most:g}], from the diameter to half of the box"
+        longest = min(lengths) / 2.0
+        if reach is not None and not DIAMETER < reach <= longest:
+            legal = f"be in (2, {longest:g}], from the diameter to half of the box"
             raise InputError("observables.pair_correlation.reach", reach, legal)
         self._width = DIAMETER / bins
-        self._edges = self._width * np.arange(int((reach or min(REACH, most)) / self._width) + 1)
+        self._edges = self._width * np.arange(
+            int((reach or min(DEFAULT_REACH, longest)) / self._width) + 1
+        )
         middle = (self._edges[1:] + self._edges[:-1]) / 2.0
         self.coordinates = {"distance": middle}
-        D, groups = system.dimension, system.species or (Group(system.particles, 1.0),)
+        D, groups = system.dimension, system.species or (SpeciesGroup(system.particles, 1.0),)
         N, M = groups[0].particles, groups[-1].particles
-        number = N * M if len(groups) == 2 else N * (N - 1) / 2.0
-        self._ideal = number * VOLUME[D] * np.diff(self._edges**D) / system.volume
+        pairs = N * M if len(groups) == 2 else N * (N - 1) / 2.0
+        self._ideal = pairs * VOLUME[D] * np.diff(self._edges**D) / system.volume
         self._contact = contact = groups[0].radius + groups[-1].radius
-        outside = self._edges[:-1] > contact - GRAZE
-        self._near = np.flatnonzero(outside & (middle < contact + FITTED))
+        beyond_contact = self._edges[:-1] > contact - CONTACT_TOLERANCE
+        self._near = np.flatnonzero(beyond_contact & (middle < contact + FIT_RANGE))
 
-    def look(self, frame: Frame) -> Values:
-        """Return g of a frame."""
-        counts = np.zeros(len(self._ideal))
-        for square in squares(frame, self._edges[-1]):
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return the pair correlation g(r) in each frame, (k, bins)."""
+        bins, instants = len(self._ideal), frames.instants
+        counts = np.zeros(instants * bins)
+        for instant, square in squared_pair_distances(frames, self._edges[-1]):
+            distance = np.sqrt(square)
+            bin_index = ((distance + CONTACT_TOLERANCE) / self._width).astype(int)
+            counted = bin_index < bins
             if self.system.cooling:
-                square = square[~(np.abs(np.sqrt(square) - self._contact) <= GRAZE)]
-            place = ((np.sqrt(square) + GRAZE) / self._width).astype(int)
-            counts += np.bincount(place[place < len(counts)], minlength=len(counts))
-        with np.errstate(invalid="ignore"):  # one particle has no pairs
-            return {"pair_correlation": counts / self._ideal}
+                counted &= ~(np.abs(distance - self._contact) <= CONTACT_TOLERANCE)
+            bin_index += bins * instant
+            counts += np.bincount(bin_index[counted], minlength=len(counts))
+        with np.errstate(invalid="ignore"):  # a single particle has no pairs
+            return {"pair_correlation": counts.reshape(instants, bins) / self._ideal}
 
-    def combine(self, means: Values) -> Values:
-        """Return g, and its value at contact."""
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return g (bins,), and its value at contact by a fit of a parabola."""
         g, near = means["pair_correlation"], self._near
         order = min(2, len(near) - 1)
         away = self.coordinates["distance"][near] - self._contact
@@ -245,67 +299,106 @@ class PairCorrelation(Observable):
         return {**means, "contact_value": np.asarray(chi)}
 
 
-def squares(frame: Frame, reach: float) -> Iterator[np.ndarray]:
-    """Generate the squared distances of all pairs nearer than `reach`, at most half of the box; of
-    two species those of one with the other.
+def squared_pair_distances(
+    frames: FrameSeries, reach: float
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Generate the instants and squared distances of all pairs nearer than `reach`, (pairs,) each.
 
-    Particles are sorted along the second axis, along which the images above slide in a sheared gas,
-    and each is compared with those that follow it within `reach`.
+    Squared distances are in a^2. `reach` (in particle radii a) is at most half of the box; instants
+    are counted from 0. With two species, only pairs of unlike particles. Particles are sorted along
+    the second axis, whose periodic images are shifted in a sheared gas, and compared with the next
+    particle, the second next, and so on, within `reach`.
     """
-    lengths = np.array(frame.system.box, float)
-    order, species = np.argsort(frame.position[:, 1]), frame.species_of
-    apart = species is not None and len(frame.system.species) == 2
-    position, kind = frame.position[order], order if species is None else species[order]
-    number, near = len(position), position[:, 1] < reach
-    above, kind = position[near].copy(), np.concatenate([kind, kind[near]])
-    above[:, 1] += lengths[1]
-    above[:, 0] += frame.image_shift
-    position = np.concatenate([position, above])
-    last = np.searchsorted(position[:, 1], position[:, 1] + reach, side="right")
-    others = [axis for axis in range(len(lengths)) if axis != 1]
-    for first in range(0, number, ROWS):
-        rows = np.arange(first, min(first + ROWS, number))
-        later = np.arange(first + 1, last[rows[-1]])
-        between = position[None, later] - position[rows, None]
-        for axis in others:
-            between[..., axis] -= lengths[axis] * np.rint(between[..., axis] / lengths[axis])
-        square = (between**2).sum(axis=-1)
-        there = (later[None] > rows[:, None]) & (square < reach**2)
-        if apart:
-            there &= kind[later] != kind[rows, None]
-        yield square[there]
+    lengths, number = frames.system.box, frames.position.shape[1]
+    axes, species = _sorted_with_images(frames, reach)
+    for later in range(1, axes[1].shape[1]):
+        rows = min(number, axes[1].shape[1] - later)
+        separations = [
+            coordinate[:, later : later + rows] - coordinate[:, :rows] for coordinate in axes
+        ]
+        if not (separations[1] < reach).any():
+            return
+        square = np.zeros(separations[0].shape)
+        for axis, (separation, length) in enumerate(zip(separations, lengths, strict=True)):
+            if axis != 1:
+                assert length is not None  # the box is periodic
+                separation -= length * np.rint(separation / length)
+            square += separation**2
+        near = square < reach**2
+        if species is not None:
+            near &= species[:, later : later + rows] != species[:, :rows]
+        yield np.nonzero(near)[0], square[near]
 
 
-NAME = "mean_square_displacement"
+def _sorted_with_images(frames, reach):
+    """Return positions along each axis, (k, N + images), and species, sorted along the second axis.
+
+    Species are None unless there are two. Images are copies of the lowest particles above the box;
+    an image that is beyond `reach` (in particle radii a) is at inf.
+    """
+    order = np.argsort(frames.position[..., 1], axis=-1)
+    axes = [
+        np.take_along_axis(coordinate, order, axis=-1)
+        for coordinate in np.moveaxis(frames.position, -1, 0)
+    ]
+    low = axes[1] < reach
+    images = np.count_nonzero(low, axis=-1).max()
+    images_above = [coordinate[:, :images].copy() for coordinate in axes]
+    images_above[0] += frames.image_shift[:, None]
+    images_above[1] = np.where(low[:, :images], images_above[1] + frames.system.box[1], np.inf)
+    axes = [np.concatenate(pair, axis=-1) for pair in zip(axes, images_above, strict=True)]
+    if frames.species_of is None or len(frames.system.species) != 2:
+        return axes, None
+    species = frames.species_of[order]
+    return axes, np.concatenate([species, species[:, :images]], axis=-1)
+
+
+MSD_NAME = "mean_square_displacement"
+
+
+class MeanSquareDisplacementSettings(ObservableSettings, frozen=True, kw_only=True):
+    """Settings of `mean_square_displacement`."""
+
+    lags: Annotated[int, whole(1, 20, "Number of times, each twice the one before.")] = 8
 
 
 class MeanSquareDisplacement(Observable):
     """Mean square displacement after 1, 2, 4, 8, ... observations."""
 
     effects = ("paths",)
-    settings: ClassVar[Mapping[str, Setting]] = {
-        "lags": Whole("Number of times, each twice the one before.", 1, 20, 8)
-    }
-    relaxations, of_flow = 96.0, True
+    settings = MeanSquareDisplacementSettings
+    relaxations, depends_on_flow = 96.0, True
     variables: Mapping[str, Variable] = {
         "lag": Variable("time between two observations", TIME, ("lag",)),
         "moving": Variable("component of the displacement", "", ("moving",), "str"),
-        NAME: Variable(f"mean square displacement{IN_THIS_BOX}", f"{LENGTH}^2", ("lag", "moving")),
+        MSD_NAME: Variable(
+            f"mean square displacement{IN_THIS_BOX}", f"{LENGTH}^2", ("lag", "moving")
+        ),
     }
 
     def __init__(self, system: System, lags: int) -> None:
+        """Keep the positions of earlier observations; `lags` is the number of times."""
         super().__init__(system)
-        self._looks = 2 ** np.arange(lags)
+        self._lags = 2 ** np.arange(lags)
         self._axes = slice(1 if system.shear_rate else 0, None)
         self._path: deque[np.ndarray] = deque(maxlen=2 ** (lags - 1) + 1)
-        self.coordinates = {"lag": self._looks * system.interval, "moving": system.axes[self._axes]}
+        self.coordinates = {"lag": self._lags * system.interval, "moving": system.axes[self._axes]}
 
-    def look(self, frame: Frame) -> Values:
-        """Return the mean square displacement since earlier looks, NaN where there was none."""
-        assert frame.unwrapped_position is not None  # the effect is in the scene
-        self._path.append(frame.unwrapped_position[:, self._axes])
-        squares = np.full((len(self._looks), self._path[-1].shape[1]), np.nan)
-        for row, looks in zip(squares, self._looks, strict=True):
-            if looks < len(self._path):
-                row[:] = ((self._path[-1] - self._path[-1 - looks]) ** 2).mean(axis=0)
-        return {NAME: squares}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return the mean square displacement since earlier observations, NaN without one.
+
+        It is averaged over the particles, in a^2, and has shape (k, lags, components).
+        """
+        assert frames.unwrapped_position is not None  # the effect is in the scene
+        positions = frames.unwrapped_position[..., self._axes]
+        path, known_instants = np.array([*self._path, *positions]), len(self._path)
+        self._path.extend(positions.copy())
+        squared_displacements = np.full(
+            (len(positions), len(self._lags), positions.shape[-1]), np.nan
+        )
+        for lag_index, lag in enumerate(self._lags.tolist()):
+            first = max(known_instants, lag)
+            if first < len(path):
+                steps = path[first:] - path[first - lag : len(path) - lag]
+                squared_displacements[first - known_instants :, lag_index] = (steps**2).mean(axis=1)
+        return {MSD_NAME: squared_displacements}

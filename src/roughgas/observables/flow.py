@@ -1,82 +1,102 @@
-"""Energies over the local flow of a gas, beside the mean flow that R leaves out.
+"""Energies relative to the local flow of a gas; R is relative to its mean flow only.
 
-A sheared gas is described without its mean flow, a straight line. A large gas has further
-flows, whose energy passes for temperature. The local flow is the mean velocity, weighted
-with the masses, of the particles in a cell; what remains of their velocities has D (n - 1) degrees
-of freedom in a cell of n particles, so that the energy per degree of freedom does not depend on the
-size of cells in equilibrium. This is the idea of profile-unbiased thermostats (D. J.
-Evans & G. P. Morriss, Phys. Rev. Lett. 56, 2172 (1986)).
+R = E_rot/(E_rot + E_trans) is the share of rotational energy per degree of freedom. The mean flow
+of a sheared gas, a linear profile, is subtracted from velocities. A large gas has further flows,
+whose energy counts as temperature. The local flow is the mean velocity, weighted with the masses,
+of the particles in a cell. Velocities relative to it have D (n - 1) degrees of freedom in a cell of
+n particles, so that the energy per degree of freedom does not depend on the size of cells in
+equilibrium. This is the idea of profile-unbiased thermostats (D. J. Evans & G. P. Morriss, Phys.
+Rev. Lett. 56, 2172 (1986)).
+
+Arrays (k, ...) are of the k instants of a FrameSeries.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import ClassVar, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from roughgas.base.fields import whole
 from roughgas.data.variables import ENERGY, SPIN, Variable
-from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
+from roughgas.observables.averages import NamedArrays
+from roughgas.observables.frames import FrameSeries, System
+from roughgas.observables.plugin import Observable, ObservableSettings, columnwise
 
 E_TRANS, RATIO = "E_trans_local", "R_local"
-IN_CELL = 40
-"""Particles in a cell: their mean velocity is a flow, and hardly the motion of single particles."""
-IN_LAYER, LAYERS = 10, 16
-"""Particles in a layer between walls at least, and the largest number of layers."""
+PARTICLES_PER_CELL = 40
+"""Mean number of particles in a cell, which averages out most of their thermal motion."""
+MINIMUM_PER_LAYER, MAXIMUM_LAYERS = 10, 16
+"""Smallest number of particles in a layer between walls, and largest number of layers."""
 
 
-class Motion(NamedTuple):
-    """Particles at an instant, in any order, in units of a, m and T."""
+class ParticleMotion(NamedTuple):
+    """Particles of a gas at an instant, in any order, in units of a, m and T.
+
+    At several instants each array has a further first axis (instants,).
+    """
 
     position: np.ndarray  # (N, D)
     velocity: np.ndarray  # (N, D)
     spin: np.ndarray | None  # (N, 2 D - 3)
-    mass: np.ndarray  # (N,), as the next two
+    mass: np.ndarray  # (N,), as inertia and radius
     inertia: np.ndarray  # q
     radius: np.ndarray
 
 
-class OverFlow(NamedTuple):
-    """Energies of a gas over its local flow, (instants,) each."""
+class FlowCorrectedEnergies(NamedTuple):
+    """Energies of a gas per degree of freedom relative to its local flow, (instants,) each."""
 
     E_trans: np.ndarray  # NaN where no two particles share a cell
     R: np.ndarray  # NaN without spin
-    shift: np.ndarray  # R, less R over the mean flow: 0 on average in equilibrium
+    shift: np.ndarray  # R less R relative to the mean flow: 0 on average in equilibrium
+
+
+class LocalFlowSettings(ObservableSettings, frozen=True, kw_only=True):
+    """Settings of `local_flow`."""
+
+    particles: Annotated[int, whole(2, 1_000_000, "Particles in a cell, on average.")] = (
+        PARTICLES_PER_CELL
+    )
 
 
 class LocalFlow(Observable):
     """Energies over the local flow, which they leave out as well as the mean flow."""
 
-    settings: ClassVar[Mapping[str, Setting]] = {
-        "particles": Whole("Particles in a cell, on average.", 2, 1_000_000, IN_CELL)
-    }
+    settings = LocalFlowSettings
     variables: Mapping[str, Variable] = {
         E_TRANS: Variable("translational energy per degree of freedom over the local flow", ENERGY),
         RATIO: Variable("share of rotation in the energy over the local flow", when=(SPIN,)),
     }
 
-    def __init__(self, system: System, particles: int = IN_CELL) -> None:
+    def __init__(self, system: System, particles: int = PARTICLES_PER_CELL) -> None:
+        """Divide the box into cells of `particles` on average."""
         super().__init__(system)
-        self.cells = cells_of(system, particles)
+        self.cells = cell_counts(system, particles)
 
-    def look(self, frame: Frame) -> Values:
-        """Return E_trans and R over the local flow."""
-        bodies = frame.mass, frame.inertia, frame.radius
-        motion = Motion(frame.position, frame.velocity, frame.spin, *bodies)
-        over = over_flow([motion], self.system, self.cells)
-        return {E_TRANS: over.E_trans[0], RATIO: over.R[0]}
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return E_trans and the share R of rotation relative to the local flow, (k,) each."""
+        shape = frames.instants, 1
+        properties = (
+            np.tile(values, shape) for values in (frames.mass, frames.inertia, frames.radius)
+        )
+        motion = ParticleMotion(frames.position, frames.velocity, frames.spin, *properties)
+        energies = flow_corrected_energies_of(motion, self.system, self.cells)
+        return {E_TRANS: energies.E_trans, RATIO: energies.R}
 
-    def combine(self, means: Values) -> Values:
-        """Return the energy, and R where particles spin."""
+    @columnwise
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return the mean energy, and the mean of R where particles spin."""
         return means if self.system.inertia is not None else {E_TRANS: means[E_TRANS]}
 
 
-def cells_of(system: System, particles: int) -> tuple[int, ...]:
-    """Return the number of cells along each axis: cubes with `particles` on average.
+def cell_counts(system: System, particles: int) -> tuple[int, ...]:
+    """Return the number of cells along each axis, for cubes with `particles` particles on average.
 
-    Between walls across the second axis there are layers along it: their flow varies across.
+    Between walls at the ends of the second axis, cells are layers, as the flow varies along it.
     """
     if system.dimension == 2 and not system.periodic[1]:
-        return 1, max(1, min(LAYERS, system.particles // min(IN_LAYER, particles)))
+        return 1, max(1, min(MAXIMUM_LAYERS, system.particles // min(MINIMUM_PER_LAYER, particles)))
     sides = np.array([math.nan if side is None else side for side in system.box])
     if np.isnan(sides).any():
         return (1,) * system.dimension
@@ -84,73 +104,99 @@ def cells_of(system: System, particles: int) -> tuple[int, ...]:
     return tuple(int(max(1, round(cells))) for cells in sides / width)
 
 
-def over_flow(motions: Sequence[Motion], system: System, cells: tuple[int, ...]) -> OverFlow:
-    """Return the energies over the flow in cells, at several instants: together they cost less."""
-    together = _stacked(motions)
-    velocity = _over_mean_flow(together, system)
-    numbers = _cell_numbers(together.position, system, cells)
-    local, overall = local_energies(together.mass, velocity, numbers, math.prod(cells))
-    if together.spin is None:
-        unknown = np.full(len(motions), math.nan)
-        return OverFlow(local, unknown, unknown)
-    rotational = _rotational_energy(together)
-    ratio, over_mean = (rotational / (rotational + E_trans) for E_trans in (local, overall))
-    return OverFlow(local, ratio, ratio - over_mean)
+def flow_corrected_energies(
+    motions: Sequence[ParticleMotion], system: System, cells: tuple[int, ...]
+) -> FlowCorrectedEnergies:
+    """Return the energies relative to the flow in cells, at several instants at once (faster).
+
+    `motions` has the particles at each instant; other arguments as in `flow_corrected_energies_of`.
+    """
+    return flow_corrected_energies_of(_stacked(motions), system, cells)
+
+
+def flow_corrected_energies_of(
+    motion: ParticleMotion, system: System, cells: tuple[int, ...]
+) -> FlowCorrectedEnergies:
+    """Return energies per degree of freedom relative to the local flow in cells, (instants,) each.
+
+    `motion` has arrays (instants, N, ...), `system` the box and the shear rate, `cells` the number
+    of cells along each axis. E_trans is in m a^2/T^2; R is the rotational share of E_rot + E_trans.
+    Spins are relative to their mean.
+    """
+    velocity = _without_mean_flow(motion, system)
+    numbers = _cell_indices(motion.position, system, cells)
+    local, overall = local_energies(motion.mass, velocity, numbers, math.prod(cells))
+    if motion.spin is None:
+        undefined = np.full(len(velocity), math.nan)
+        return FlowCorrectedEnergies(local, undefined, undefined)
+    rotational = _rotational_energy(motion)
+    ratio, mean_flow_ratio = (rotational / (rotational + E_trans) for E_trans in (local, overall))
+    return FlowCorrectedEnergies(local, ratio, ratio - mean_flow_ratio)
 
 
 def _stacked(motions):
-    """Return the motions of several instants as arrays (instants, N, ...)."""
+    """Return the motions of several instants as a motion of arrays (instants, N, ...)."""
     columns = zip(*motions, strict=True)
-    return Motion(*(None if column[0] is None else np.stack(column) for column in columns))
+    return ParticleMotion(*(None if column[0] is None else np.stack(column) for column in columns))
 
 
 def local_energies(
     mass: np.ndarray, velocity: np.ndarray, cell: np.ndarray, cells: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return translational energies per degree of freedom, (instants,) each: over the flow in
-    cells, and over the mean velocity of all particles.
+    """Return two translational energies per degree of freedom, (instants,) each, in m a^2/T^2.
 
-    `mass` (instants, N), `velocity` (instants, N, D) over the mean flow; `cell` (instants, N) is
-    the number of each particle's cell, below `cells`. The first energy is NaN where no two
-    particles share a cell.
+    The first energy is relative to the flow in cells, the second to the mean velocity of all
+    particles. `mass` (instants, N), `velocity` (instants, N, D) relative to the mean flow; `cell`
+    (instants, N) is the index of the cell of each particle, below the number of cells `cells`. The
+    first energy is NaN where no two particles share a cell.
     """
     instants, number, dimension = velocity.shape
     bins = (cell + cells * np.arange(instants)[:, None]).ravel()
 
-    def in_cells(values):
+    def cell_sums(values):
+        """Return sums of `values` (instants, N) over each cell, (instants, cells)."""
         sums = np.bincount(bins, values.ravel(), instants * cells)
         return sums.reshape(instants, cells)
 
-    masses = in_cells(mass)
+    masses = cell_sums(mass)
     shared = np.where(masses > 0.0, masses, 1.0)
-    total, flows, mean = np.zeros((3, instants))
+    total_energy, flow_energy, mean_flow_energy = np.zeros((3, instants))
     for component in np.moveaxis(velocity, -1, 0):
         momentum = mass * component
-        total += (momentum * component).sum(axis=1)
-        in_each = in_cells(momentum)
-        flows += (in_each**2 / shared).sum(axis=1)
-        mean += in_each.sum(axis=1) ** 2 / mass.sum(axis=1)
-    freedom = number - np.count_nonzero(masses, axis=1)
-    local = np.where(freedom > 0, total - flows, math.nan) / np.maximum(freedom, 1)
-    overall = (total - mean) / (number - 1)
+        total_energy += (momentum * component).sum(axis=1)
+        cell_momenta = cell_sums(momentum)
+        flow_energy += (cell_momenta**2 / shared).sum(axis=1)
+        mean_flow_energy += cell_momenta.sum(axis=1) ** 2 / mass.sum(axis=1)
+    degrees_of_freedom = number - np.count_nonzero(masses, axis=1)
+    local = np.where(degrees_of_freedom > 0, total_energy - flow_energy, math.nan) / np.maximum(
+        degrees_of_freedom, 1
+    )
+    overall = (total_energy - mean_flow_energy) / (number - 1)
     return 0.5 * local / dimension, 0.5 * overall / dimension
 
 
-def _cell_numbers(position, system, cells):
-    """Return the number of the cell that each particle is in, (instants, N)."""
+def _cell_indices(position, system, cells):
+    """Return the index of the cell of each particle, (instants, N).
+
+    `position` (instants, N, D) is in particle radii a, `cells` has the number of cells along each
+    axis.
+    """
     numbers = np.zeros(position.shape[:2], int)
     for axis, (side, count) in enumerate(zip(system.box, cells, strict=True)):
         if count > 1:
-            along = position[..., axis]
-            reach = along.max(axis=1, keepdims=True) + 1.0 if side is None else side
-            at = np.minimum((along * (count / reach)).astype(int), count - 1)
-            numbers = numbers * count + np.maximum(at, 0)
+            coordinate = position[..., axis]
+            length = coordinate.max(axis=1, keepdims=True) + 1.0 if side is None else side
+            index = np.minimum((coordinate * (count / length)).astype(int), count - 1)
+            numbers = numbers * count + np.maximum(index, 0)
     return numbers
 
 
-def _over_mean_flow(motion, system):
-    """Return velocities over the mean flow: between walls that close the second axis, over the
-    straight line that fits v_x best, as E_trans is."""
+def _without_mean_flow(motion, system):
+    """Return velocities of a `motion` relative to the mean flow, (instants, N, D).
+
+    Between walls at the ends of the second axis, the mean flow is a linear fit to v_x, as for
+    E_trans.
+    """
     height, rate = motion.position[..., 1], system.shear_rate
     if not rate and system.periodic[1]:
         return motion.velocity
@@ -159,27 +205,27 @@ def _over_mean_flow(motion, system):
         velocity[..., 0] -= rate * (height - system.box[1] / 2.0)
         return velocity
     mass = motion.mass
-    height = height - _sum(mass * height) / _sum(mass)
-    spread = _sum(mass * height**2)
-    slope = _sum(mass * height * velocity[..., 0]) / np.where(spread > 0.0, spread, 1.0)
+    height = height - _particle_sum(mass * height) / _particle_sum(mass)
+    spread = _particle_sum(mass * height**2)
+    slope = _particle_sum(mass * height * velocity[..., 0]) / np.where(spread > 0.0, spread, 1.0)
     velocity[..., 0] -= slope * height
     return velocity
 
 
-def _sum(values):
-    """Return sums over particles, (instants, 1)."""
+def _particle_sum(values):
+    """Return sums of `values` (instants, N) over particles, (instants, 1)."""
     return values.sum(axis=1, keepdims=True)
 
 
 def _rotational_energy(motion):
-    """Return the rotational energy per degree of freedom over the mean spin, (instants,).
+    """Return the rotational energy per degree of freedom relative to the mean spin, (instants,).
 
-    The mean spin is the surface velocity of a particle that turns with the others.
+    The mean spin is the surface velocity of a particle with the mean angular velocity.
     """
-    turning, radius = motion.mass * motion.inertia, motion.radius
+    spin_mass, radius = motion.mass * motion.inertia, motion.radius
     number, axes = motion.spin.shape[1:]
     energy = np.zeros(len(motion.spin))
     for spin in np.moveaxis(motion.spin, -1, 0):
-        rotation = _sum(turning * radius * spin) / _sum(turning * radius**2)
-        energy += (turning * (spin - radius * rotation) ** 2).sum(axis=1)
+        rotation = _particle_sum(spin_mass * radius * spin) / _particle_sum(spin_mass * radius**2)
+        energy += (spin_mass * (spin - radius * rotation) ** 2).sum(axis=1)
     return 0.5 * energy / ((number - 1) * axes)

@@ -1,429 +1,312 @@
-"""What an observable is: it looks at frames, and says what the means of all looks amount to.
+"""Base class of observables: they observe frames, and turn time averages into results.
 
-Of a mixture every observable is made once for each species, or for each pair of species, and sees
-the frame of these particles alone: `<name>_species` has what it finds (OfSpecies). One that needs
-sums over contacts sees all particles, and says itself what each species has.
+An observable is instantiated for every gas, so it may store frames (observables/frames.py);
+`roughgas.observables.OBSERVABLES` lists the classes. Averages over time and their errors are in
+observables/averages.py.
 
-An observable is made anew for every gas, so it may remember frames; `roughgas.observables.KINDS`
-lists them. A frame holds the particles of a gas at an instant, as plain numpy arrays. Units:
-particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting energy:
-its velocities and spins are in units in which the present E_trans is 1.
-
-The standard error of a function f of means is that of the series to which f is linear in the
-deviations from the means: z_k = df(m).(x_k - m), whose mean vanishes (the infinitesimal jackknife,
-B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, chapter 6).
+In a mixture every observable is instantiated for each species, or each pair of species, and
+observes the frames of these particles; the results are `<name>_species` (SpeciesObservable).
+Observables that need sums over contacts observe all particles, and compute the results of each
+species themselves.
 """
 
 import itertools
 import math
-import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from roughgas.base import InputError, NeedsError
+from roughgas.base import InputError, NamedValues
+from roughgas.base.fields import Settings, whole
 from roughgas.data.variables import Variable
-from roughgas.effects.contacts import columns_of_pairs
-from roughgas.effects.settings import Number, Whole
-from roughgas.statistics.errors import (
-    Evidence,
-    autocorrelation_time,
-    blocking,
-    carriers,
-    degrees_of_freedom,
-    period_means,
-)
-
-AXES = "xyz"
+from roughgas.observables.averages import NamedArrays
+from roughgas.observables.frames import Frame, FrameSeries, System
 
 
-class Group(NamedTuple):
-    """The particles of a species."""
+class ObservableSettings(Settings, frozen=True, kw_only=True):
+    """Settings that every observable has."""
 
-    particles: int
-    radius: float  # in a; NaN where their radii differ
-
-
-class System(NamedTuple):
-    """What stays the same during a run."""
-
-    particles: int  # N
-    box: tuple[float | None, ...]  # lengths in a, D of them; None is open above
-    periodic: tuple[bool, ...]  # of each axis
-    inertia: float | None  # q = I/(m a^2); None where particles do not spin
-    shear_rate: float  # 1/T: the mean flow is v_x = shear_rate (y - L/2)
-    interval: float  # between looks, in T or in collisions per particle
-    cooling: bool
-    species: tuple[Group, ...] = ()  # none where all particles have radius a and mass m
-    period: float | None = None  # of the schedule, in T: whole ones of the drive
-
-    def only(self, *species: int) -> "System":
-        """Return what is known of the particles of some species alone, by index."""
-        chosen = tuple(self.species[k] for k in sorted({*species}))
-        return self._replace(particles=sum(one.particles for one in chosen), species=chosen)
-
-    @property
-    def dimension(self) -> int:
-        """D, 2 of disks and 3 of spheres."""
-        return len(self.box)
-
-    @property
-    def volume(self) -> float:
-        """Area or volume of the box in a^D; infinite if it is open."""
-        return math.prod(math.inf if length is None else length for length in self.box)
-
-    @property
-    def across(self) -> int:
-        """The axis that layers are across, the vertical one; of a sheared gas that of the shear."""
-        return 1 if self.shear_rate else self.dimension - 1
-
-    @property
-    def axes(self) -> list[str]:
-        """The names of the axes, `x`, `y`, `z`."""
-        return list(AXES[: self.dimension])
+    every: Annotated[int, whole(1, 1_000_000, "Samples from one observation to the next.")] = 1
 
 
-OF_EACH = (
-    *("position", "velocity", "spin", "radius", "mass", "inertia", "species_of"),
-    *("unwrapped_position", "angle"),
-)
-"""The fields of a frame with an entry for each particle."""
+Combine = TypeVar("Combine", bound=Callable[..., NamedArrays])
 
 
-class Frame(NamedTuple):
-    """The particles at an instant, in the order of the start."""
+def columnwise(combine: Combine) -> Combine:
+    """Mark a method `combine` that accepts a batch of means, along an additional last axis.
 
-    system: System
-    time: float  # T since the start
-    collisions: float  # per particle, since the start or since the gas began to cool
-    position: np.ndarray  # (N, D) in a, folded into the box
-    velocity: np.ndarray  # (N, D) in a/T, of the images in the box
-    spin: np.ndarray | None  # (N, 2 D - 3) surface velocities in a/T; None without spin
-    radius: np.ndarray  # (N,) in a
-    mass: np.ndarray  # (N,) in m
-    inertia: np.ndarray  # (N,) q, I over mass and radius^2
-    image_shift: float  # displacement along x of the image above, of a sheared gas; else 0
-    rates: Mapping[str, float]  # what effects have summed up since the look before, per T
-    species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
-    speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
-    floor: float = 0.0  # height of a shaken floor, in a
-    unwrapped_position: np.ndarray | None = None  # (N, D) in a, along continuous paths, NaN along
-    # the flow of a sheared gas; None without the effect `paths`
-    angle: np.ndarray | None = None  # (N,) rad by which disks have turned; None as above
-
-    def only(self, *species: int) -> "Frame":
-        """Return the frame of the particles of some species alone, by index, without `rates`.
-
-        Raises NeedsError where all particles are alike.
-        """
-        if self.species_of is None:
-            raise NeedsError("Frame.only", "species")
-        there, own = np.isin(self.species_of, species), self._asdict()
-        of_each: dict[str, Any] = {
-            name: own[name][there] for name in OF_EACH if own[name] is not None
-        }
-        return self._replace(system=self.system.only(*species), rates={}, **of_each)
-
-    def of_each_species(self) -> list["Frame"]:
-        """Return the frame of each species, without `rates`."""
-        return [self.only(kind) for kind in range(len(self.system.species))]
-
-    def of_pairs(self, names: Iterable[str]) -> np.ndarray:
-        """Return sums over contacts per T, (species, species, names), half of each contact of
-        unlike partners for either order of them: all of them are the sum. (1, 1, names) without
-        species."""
-        kinds, names = max(1, len(self.system.species)), [*names]
-        sums = np.array([self.rates[name] for name in columns_of_pairs(names, kinds)])
-        either = sums.reshape(kinds, kinds, len(names))
-        return (either + either.transpose(1, 0, 2)) / 2.0
-
-    @property
-    def energy(self) -> np.ndarray:
-        """Kinetic energies (N,), m v^2/2 and, without a mean spin, m q a^2 w^2/2."""
-        square, spin_square = (self.velocity**2).sum(axis=1), (self.thermal_spin**2).sum(axis=1)
-        return 0.5 * (self.mass * square + self.mass * self.inertia * spin_square)
-
-    @property
-    def thermal_velocity(self) -> np.ndarray:
-        """Velocities (N, D) without the mean flow of a sheared gas."""
-        rate, velocity = self.system.shear_rate, self.velocity
-        if rate:
-            velocity = velocity.copy()
-            middle = (self.system.box[1] or 0.0) / 2.0
-            velocity[:, 0] -= rate * (self.position[:, 1] - middle)
-        return velocity
-
-    @property
-    def thermal_spin(self) -> np.ndarray:
-        """Spins (N, 2 D - 3) without their mean in a sheared gas; zeros where nothing spins."""
-        if self.spin is None:
-            return np.zeros((self.system.particles, 2 * self.system.dimension - 3))
-        if not self.system.shear_rate:
-            return self.spin
-        turning = (self.mass * self.inertia * self.radius)[:, None]
-        rotation = (turning * self.spin).sum(axis=0) / (turning[:, 0] @ self.radius)
-        return self.spin - self.radius[:, None] * rotation
-
-
-Values = Mapping[str, np.ndarray]
-
-
-Setting = Number | Whole
+    A column is an index of this axis: a set of means, such as a sample of a series. The results of
+    the method have this axis, too, and have the same bits as if each column were passed alone.
+    """
+    vars(combine)["columnwise"] = True
+    return combine
 
 
 class Observable:
-    """Something to watch in a gas.
+    """Base class of observables, which observe frames and compute results from averages over time.
 
-    `variables` describes what lands in the dataset: results of `combine`, each of which gets an
-    error bar, and the `coordinates`, which are known beforehand.
+    `variables` describes the variables in the dataset: the results of `combine`, each with an error
+    bar, and the `coordinates`, which are known beforehand.
     """
 
-    settings: ClassVar[Mapping[str, Setting]] = {}
-    effects: ClassVar[tuple[str, ...]] = ()  # that it needs in the kernel, which only look
-    spins: ClassVar[bool] = False  # it needs particles that spin
-    alike: ClassVar[bool] = False  # of a mixture, it makes sense of each species alone
-    pairs: ClassVar[bool] = False  # it is of pairs, which may be of two species
-    kept: tuple[str, ...] = ()  # what points keep look by look, and nobody averages
+    settings: ClassVar[type[ObservableSettings]] = ObservableSettings
+    effects: ClassVar[tuple[str, ...]] = ()  # passive effects that it needs in the kernel
+    needs_spin: ClassVar[bool] = False  # whether particles have to spin
+    single_species: ClassVar[bool] = False  # undefined for a mixture as a whole
+    pairwise: ClassVar[bool] = False  # defined for pairs of particles, also of two species
+    series_names: tuple[str, ...] = ()  # variables that are saved per observation, not averaged
     relaxations: float = math.inf
-    # e-folds of the slowest mode of the two temperatures that a window of a driven gas must have
-    # for errors that are right, by benchmarks/observed.py; infinite where no such length is known
-    of_flow: bool = (
-        False  # it depends on flows: the window needs as many e-folds of the longest one
-    )
-    beds: bool = True  # whether that length is known under gravity, too
-    doubtful: tuple[str, ...] = ()  # variables for which no length is known
+    # shortest window of a driven gas with correct errors, in e-folds of the slowest mode of the two
+    # temperatures, by benchmarks/observed.py; infinite if unknown
+    depends_on_flow: bool = False  # the window needs as many e-folds of the longest flow, too
+    valid_in_beds: bool = True  # whether `relaxations` is known under gravity, too
+    unvalidated: tuple[str, ...] = ()  # variables whose `relaxations` is unknown
     variables: Mapping[str, Variable] = {}
 
     def __init__(self, system: System) -> None:
-        """Raise InputError where the system has no such thing."""
+        """Store the system; raise InputError if the observable is undefined in it."""
         self.system = system
         self.coordinates: dict[str, Any] = {}
 
-    def look(self, frame: Frame) -> Values:
-        """Return arrays, which are averaged over all looks, or `kept`; NaN where there is nothing
-        yet. A look whose first kept array is NaN is not kept."""
-        raise NotImplementedError
+    def observe(self, frame: Frame) -> NamedArrays:
+        """Return arrays by name, which are averaged over all observations, or saved as series.
 
-    def combine(self, means: Values) -> Values:
-        """Return the results, a smooth function of the means of what `look` returns."""
+        NaN where a value does not exist yet. An observation is not saved if the first array of
+        `series_names` is NaN.
+        """
+        if type(self).observe_series is Observable.observe_series:
+            raise NotImplementedError
+        return {
+            name: values[0] for name, values in self.observe_series(FrameSeries.of([frame])).items()
+        }
+
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return the results of `observe` for each of k frames, arrays (k, ...) by name.
+
+        A subclass defines either method; this one observes several instants at once, and is faster.
+        Instants are passed in their order, each once; k is at least 1.
+        """
+        observations = [self.observe(frames.frame(number)) for number in range(frames.instants)]
+        return {
+            name: np.array([values[name] for values in observations]) for name in observations[0]
+        }
+
+    def saved_attributes(self) -> NamedValues:
+        """Return the attributes that a checkpoint saves: numbers and arrays, by name."""
+        return vars(self)
+
+    @columnwise
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return the results by name, a smooth function of the means of all observations.
+
+        `means` has the averages over time of the arrays of `observe`, by name.
+        """
         return means
+
+    @property
+    def combines_columns(self) -> bool:
+        """Whether `combine` accepts many sets of means at once: see `columnwise`."""
+        return getattr(self.combine, "columnwise", False)
 
 
 SUFFIX = "_species"
-"""Ends the names of what a species, or a pair of species, has of its own."""
+"""Suffix of the names of variables of species, or of pairs of species."""
 PAIR = ("species", "other")
 IN_THIS_BOX = "; depends on the size of the box"
-"""Ends what is said of numbers that transport coefficients are made of."""
+"""End of the descriptions of variables that transport coefficients are computed from."""
 
 
-class OfSpecies(Observable):
-    """An observable of a mixture: of all particles, unless they must be alike, and of each species
-    or pair of species alone, unless it rests on sums over all contacts."""
+class SpeciesObservable(Observable):
+    """An observable of a mixture, evaluated for each species or pair of species.
 
-    def __init__(self, kind: type[Observable], system: System, settings: Mapping[str, Any]) -> None:
+    It is also evaluated for all particles, unless it is `single_species`.
+    """
+
+    def __init__(
+        self, observable_class: type[Observable], system: System, settings: NamedValues
+    ) -> None:
+        """Make observables of `observable_class` for species or pairs, and all particles.
+
+        `settings` are the further arguments of its constructor.
+        """
         super().__init__(system)
-        self.relaxations, self.of_flow, self.beds = kind.relaxations, kind.of_flow, kind.beds
-        self.doubtful = (*kind.doubtful, *(name + SUFFIX for name in kind.doubtful))
-        kinds, dims = range(len(system.species)), PAIR[: 1 + kind.pairs]
-        self._which = list(itertools.combinations_with_replacement(kinds, len(dims)))
-        number = {which: n for n, which in enumerate(self._which)}
-        every = [number[tuple(sorted(at))] for at in itertools.product(kinds, repeat=len(dims))]
-        self._place = np.array(every).reshape([len(kinds)] * len(dims))  # parts by species
-        self._whole = None if kind.alike else kind(system, **settings)
-        self._parts = [kind(system.only(*which), **settings) for which in self._which]
-        self.coordinates = self._parts[0].coordinates
-        self.kept = (*kind.kept, *(name + SUFFIX for name in kind.kept[1:]))
+        self.relaxations, self.depends_on_flow, self.valid_in_beds = (
+            observable_class.relaxations,
+            observable_class.depends_on_flow,
+            observable_class.valid_in_beds,
+        )
+        self.unvalidated = (
+            *observable_class.unvalidated,
+            *(name + SUFFIX for name in observable_class.unvalidated),
+        )
+        species_indices, dims = range(len(system.species)), PAIR[: 1 + observable_class.pairwise]
+        self._subsets = list(itertools.combinations_with_replacement(species_indices, len(dims)))
+        number_of = {indices: n for n, indices in enumerate(self._subsets)}
+        subset_numbers = [
+            number_of[tuple(sorted(pair))]
+            for pair in itertools.product(species_indices, repeat=len(dims))
+        ]
+        self._subset_of_species = np.array(subset_numbers).reshape(
+            [len(species_indices)] * len(dims)
+        )  # index of the subset of each species, or pair
+        self._total_observable = (
+            None if observable_class.single_species else observable_class(system, **settings)
+        )
+        self._subset_observables = [
+            observable_class(system.only(*indices), **settings) for indices in self._subsets
+        ]
+        self.coordinates = self._subset_observables[0].coordinates
+        self.series_names = (
+            *observable_class.series_names,
+            *(name + SUFFIX for name in observable_class.series_names[1:]),
+        )
         self.variables = {}
-        for name, about in kind.variables.items():
-            if name in self.coordinates or self._whole is not None:
-                self.variables[name] = about
-            if name not in (*self.coordinates, *kind.kept[:1]):
-                looks = 1 if name in kind.kept else 0
-                own = (*about.dims[:looks], *dims, *about.dims[looks:])
-                of = "pair of species" if kind.pairs else "species"
-                said = f"{about.long_name}, of each {of}"
-                self.variables[name + SUFFIX] = about._replace(long_name=said, dims=own)
+        for name, variable in observable_class.variables.items():
+            if name in self.coordinates or self._total_observable is not None:
+                self.variables[name] = variable
+            if name not in (*self.coordinates, *observable_class.series_names[:1]):
+                leading = 1 if name in observable_class.series_names else 0
+                variable_dims = (*variable.dims[:leading], *dims, *variable.dims[leading:])
+                group_name = "pair of species" if observable_class.pairwise else "species"
+                long_name = f"{variable.long_name}, of each {group_name}"
+                self.variables[name + SUFFIX] = variable._replace(
+                    long_name=long_name, dims=variable_dims
+                )
 
-    def look(self, frame: Frame) -> Values:
-        """Return what is seen of all particles, and of each part."""
-        found = {} if self._whole is None else dict(self._whole.look(frame))
-        each = zip(self._parts, self._which, strict=True)
-        return found | self._stacked([part.look(frame.only(*which)) for part, which in each])
+    def observe_series(self, frames: FrameSeries) -> NamedArrays:
+        """Return the observations of all particles, and of each species or pair of species."""
+        observed = (
+            {}
+            if self._total_observable is None
+            else dict(self._total_observable.observe_series(frames))
+        )
+        pairs = zip(self._subset_observables, self._subsets, strict=True)
+        by_subset = self._stacked(
+            [observable.observe_series(frames.only(*indices)) for observable, indices in pairs]
+        )
+        species_axes = self._subset_of_species.ndim  # which follow the axis of instants
+        return observed | {
+            name: np.moveaxis(values, species_axes, 0) for name, values in by_subset.items()
+        }
 
-    def combine(self, means: Values) -> Values:
-        """Return the results of all particles, and of each part."""
-        of_all = {name: one for name, one in means.items() if not name.endswith(SUFFIX)}
-        found = {} if self._whole is None else dict(self._whole.combine(of_all))
-        parts = []
-        for part, which in zip(self._parts, self._which, strict=True):
-            own = {n.removesuffix(SUFFIX): x[which] for n, x in means.items() if n.endswith(SUFFIX)}
-            parts.append(part.combine(own))
-        return found | self._stacked(parts)
+    def combine(self, means: NamedArrays) -> NamedArrays:
+        """Return the results of all particles, and of each species or pair of species, by name.
 
-    def _stacked(self, parts: Sequence[Values]) -> dict[str, np.ndarray]:
-        names = [name for name in parts[0] if name not in self.kept[:1]]
+        `means` has the means of `observe_series` by name.
+        """
+        total_means = {name: values for name, values in means.items() if not name.endswith(SUFFIX)}
+        results = (
+            {}
+            if self._total_observable is None
+            else dict(self._total_observable.combine(total_means))
+        )
+        subset_results = []
+        for observable, indices in zip(self._subset_observables, self._subsets, strict=True):
+            subset_means = {
+                n.removesuffix(SUFFIX): x[indices] for n, x in means.items() if n.endswith(SUFFIX)
+            }
+            subset_results.append(observable.combine(subset_means))
+        return results | self._stacked(subset_results)
+
+    @property
+    def combines_columns(self) -> bool:
+        """Whether `combine` accepts many sets of means at once: see `columnwise`."""
+        return self._subset_observables[0].combines_columns
+
+    def _stacked(self, subset_values: Sequence[NamedArrays]) -> dict[str, np.ndarray]:
+        """Return arrays over species, or pairs of species, by name with SUFFIX.
+
+        `subset_values` has the arrays of each subset, a species or an unordered pair, by name.
+        """
+        names = [name for name in subset_values[0] if name not in self.series_names[:1]]
         return {
-            name + SUFFIX: np.array([part[name] for part in parts])[self._place] for name in names
+            name + SUFFIX: np.array([values[name] for values in subset_values])[
+                self._subset_of_species
+            ]
+            for name in names
         }
 
 
-class Function(Observable):
-    """A function of a user's: of a frame, it returns a number, an array, or several by name.
+class FunctionObservable(Observable):
+    """An observable made of a user's function of a frame.
 
-    An array that has `dims`, `attrs` and `coords`, as that of xarray, is described by these; the
-    function's attributes `units` and `long_name` describe any other.
+    The function returns a number, an array, or a mapping of names to these. An array with `dims`,
+    `attrs` and `coords`, such as xarray's, is described by these; other results by the attributes
+    `units` and `long_name` of the function.
     """
 
     def __init__(self, system: System, name: str, function: Callable[[Frame], Any]) -> None:
+        """Store the function and the name of its result, unless it returns a mapping."""
         super().__init__(system)
         self._name, self._function = name, function
         self.variables: dict[str, Variable] = {}
         self._shapes: dict[str, tuple[int, ...]] = {}
 
-    def look(self, frame: Frame) -> Values:
-        """Return what the function does, as numbers."""
-        found = self._function(frame)
-        if not isinstance(found, Mapping) or not found:
-            found = {self._name: found}
-        values = {str(name): self._numbers(name, one) for name, one in found.items()}
-        shapes = {name: one.shape for name, one in values.items()}
+    def saved_attributes(self) -> NamedValues:
+        """Return variables, coordinates and shapes by the first observation, not the function."""
+        attributes = vars(self)
+        return {name: attributes[name] for name in ("variables", "coordinates", "_shapes")}
+
+    def observe(self, frame: Frame) -> NamedArrays:
+        """Return the result of the function as arrays of floats by name.
+
+        Raises InputError for other results, and for shapes that change between observations.
+        """
+        result = self._function(frame)
+        if not isinstance(result, Mapping) or not result:
+            result = {self._name: result}
+        values = {str(name): self._numbers(name, value) for name, value in result.items()}
+        shapes = {name: value.shape for name, value in values.items()}
         if not self.variables:
             self._shapes = shapes
-            for name, one in found.items():
-                self._describe(str(name), one, values[name].ndim)
+            for name, value in result.items():
+                self._describe(str(name), value, values[name].ndim)
         if shapes != self._shapes:
             legal = f"be the same at every observation, as at the first: {self._shapes}"
             raise InputError(f"observe.{self._name}: shapes", shapes, legal)
         return values
 
-    def _numbers(self, name: str, found: Any) -> np.ndarray:
+    def _numbers(self, name: str, result: Any) -> np.ndarray:
+        """Return the result `name` as floats; raise InputError for other types than numbers."""
         try:
-            numbers = np.asarray(getattr(found, "values", found))
-        except ValueError:  # of lists of unlike lengths
+            numbers = np.asarray(getattr(result, "values", result))
+        except ValueError:  # for lists of different lengths
             numbers = np.empty(0, object)
         if numbers.dtype.kind not in "biuf":
             legal = "return a number, an array of numbers, or a mapping of names to these"
-            raise InputError(f"observe.{name}", type(found).__name__, legal)
+            raise InputError(f"observe.{name}", type(result).__name__, legal)
         return numbers.astype(float)
 
-    def _describe(self, name: str, found: Any, dimensions: int) -> None:
-        about = {"long_name": name, "units": "1"} | _told(self._function) | _told(found)
-        own = [f"{name}_{k}" for k in range(dimensions)]
-        dims = tuple(str(dim) for dim in getattr(found, "dims", own))
-        self.variables[name] = Variable(about["long_name"], about["units"], dims)
-        for dim, along in getattr(found, "coords", {}).items():
+    def _describe(self, name: str, result: Any, dimensions: int) -> None:
+        """Add the description and the coordinates of the result `name` to this observable's.
+
+        `dimensions` is the number of axes of the result.
+        """
+        attributes = (
+            {"long_name": name, "units": "1"} | _description(self._function) | _description(result)
+        )
+        numbered_dims = [f"{name}_{k}" for k in range(dimensions)]
+        dims = tuple(str(dim) for dim in getattr(result, "dims", numbered_dims))
+        self.variables[name] = Variable(attributes["long_name"], attributes["units"], dims)
+        for dim, coordinate in getattr(result, "coords", {}).items():
             if dim in dims:
-                text = {"long_name": str(dim), "units": "1"} | _told(along)
-                words = np.asarray(along).dtype.kind not in "iuf"
-                kind: dict[str, Any] = (
-                    {"units": "", "dtype": "str"} if words else {"units": text["units"]}
+                coordinate_attributes = {"long_name": str(dim), "units": "1"} | _description(
+                    coordinate
                 )
-                self.variables[dim] = Variable(text["long_name"], dims=(dim,), **kind)
-                self.coordinates[dim] = np.asarray(along)
+                is_text = np.asarray(coordinate).dtype.kind not in "iuf"
+                encoding: dict[str, Any] = (
+                    {"units": "", "dtype": "str"}
+                    if is_text
+                    else {"units": coordinate_attributes["units"]}
+                )
+                self.variables[dim] = Variable(
+                    coordinate_attributes["long_name"], dims=(dim,), **encoding
+                )
+                self.coordinates[dim] = np.asarray(coordinate)
 
 
-def _told(one: Any) -> dict[str, str]:
-    """Return the long name and units that a function or an array has as attributes."""
-    found = getattr(one, "attrs", None) or getattr(one, "__dict__", {})
-    return {key: str(found[key]) for key in ("long_name", "units") if key in found}
-
-
-STEP = 1e-4  # of the deviations, in which the slope is taken
-
-
-class Averages(NamedTuple):
-    """Results, their standard errors, the degrees of freedom of these, and what the errors rest on,
-    each by name."""
-
-    value: dict[str, np.ndarray]
-    stderr: dict[str, np.ndarray]
-    dof: dict[str, np.ndarray]
-    evidence: dict[str, Evidence]  # arrays in the shape of the value
-
-
-def averaged(
-    combine: Callable[[Values], Values], runs: Sequence[Sequence[Values]], per_period: int = 1
-) -> Averages:
-    """Return the averages of what was seen in independent runs, in each at equal intervals.
-
-    Means are over whole periods of so many looks, if there is one. The error is by blocking in a
-    single run, else from the scatter over runs. Looks that are NaN do not count.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # means of nothing are NaN
-        series = [_stacked(run, per_period) for run in runs]
-        own = [{name: np.nanmean(x, axis=0) for name, x in one.items()} for one in series]
-        if len(runs) > 1:
-            series = [{name: np.array([one[name] for one in own]) for name in own[0]}]
-        mean = {name: np.nanmean(x, axis=0) for name, x in series[0].items()}
-        found = combine(mean)
-        slopes = list(_slopes(combine, mean, series[0]))
-    value = {name: np.asarray(one, float) for name, one in found.items()}
-    error, support = (_scatter, _replicas) if len(runs) > 1 else (_blocked, _length_of_series)
-    linear = {name: np.array([one[name] for one in slopes]) for name in value}
-    errors = {name: error(one) for name, one in linear.items()}
-    evidence = {name: support(one) for name, one in linear.items()}
-    stderr, dof = ({name: pair[k] for name, pair in errors.items()} for k in range(2))
-    return Averages(value, stderr, dof, evidence)
-
-
-def _replicas(runs: np.ndarray) -> Evidence:
-    """Return in how many independent runs (runs, ...) there is each number."""
-    return Evidence(runs=np.isfinite(runs).sum(axis=0))
-
-
-def _length_of_series(series: np.ndarray) -> Evidence:
-    """Return how long each linearised series (samples, ...) is, and what carries its variance."""
-    columns = [column[np.isfinite(column)] for column in series.reshape(len(series), -1).T]
-    lengths = [(len(one), autocorrelation_time(one) if len(one) else math.nan) for one in columns]
-    rows = [
-        (samples, samples / time, carriers(one, time))
-        for one, (samples, time) in zip(columns, lengths, strict=True)
-    ]
-    of_each = np.array(rows, float).reshape(-1, 3).T.reshape(3, *series.shape[1:])
-    return Evidence(samples=of_each[0], times=of_each[1], carriers=of_each[2])
-
-
-def _stacked(looks: Sequence[Values], per_period: int) -> dict[str, np.ndarray]:
-    """Return arrays (periods, ...) by name."""
-    stacks = {name: np.array([look[name] for look in looks], float) for name in looks[0]}
-    if per_period == 1 or len(looks) < per_period:
-        return stacks
-    return {name: _by_period(x, per_period) for name, x in stacks.items()}
-
-
-def _by_period(x: np.ndarray, per_period: int) -> np.ndarray:
-    """Return means over periods (periods, ...), of what there is in each."""
-    if np.isfinite(x).all():
-        return np.moveaxis(period_means(np.moveaxis(x, 0, -1), per_period), -1, 0)
-    whole = x[: len(x) // per_period * per_period]
-    return np.nanmean(whole.reshape(-1, per_period, *x.shape[1:]), axis=1)
-
-
-def _slopes(combine, mean, series) -> Iterator[Values]:
-    """Generate the linear part of f(x_k) - f(mean) for each k."""
-    for k in range(len(next(iter(series.values())))):
-        ends = [
-            combine({name: m + sign * STEP * (series[name][k] - m) for name, m in mean.items()})
-            for sign in (1, -1)
-        ]
-        yield {name: (ends[0][name] - ends[1][name]) / (2.0 * STEP) for name in ends[0]}
-
-
-def _blocked(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return error and degrees of freedom of the means of a series (samples, ...)."""
-    columns = series.reshape(len(series), -1).T
-    found = [blocking(column[np.isfinite(column)]) for column in columns]
-    pairs = [(one.stderr, degrees_of_freedom(one.blocks)) for one in found]
-    return tuple(np.array(pairs).T.reshape(2, *series.shape[1:]))
-
-
-def _scatter(runs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return error and degrees of freedom of the means of independent numbers (runs, ...)."""
-    there = np.isfinite(runs)
-    count = there.sum(axis=0)
-    square = np.where(there, runs, 0.0) ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stderr = np.sqrt(square.sum(axis=0) / (count * (count - 1.0)))
-    return np.where(count > 1, stderr, math.nan), np.maximum(count - 1.0, 0.0)
+def _description(source: Any) -> dict[str, str]:
+    """Return the attributes `long_name` and `units` of a function or an array, if it has them."""
+    attributes = getattr(source, "attrs", None) or getattr(source, "__dict__", {})
+    return {key: str(attributes[key]) for key in ("long_name", "units") if key in attributes}

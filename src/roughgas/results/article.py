@@ -1,4 +1,4 @@
-"""The article as a PDF: its Typst source, filled with numbers, tables and figures of results."""
+"""The article as a PDF: its Typst source with numbers, tables and figures from the results."""
 
 import csv
 import json
@@ -8,22 +8,21 @@ import shutil
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from roughgas.base import InputError, __version__, on_one_line, required
-from roughgas.base.files import whole_file
+from roughgas.base import InputError, NamedValues, Record, __version__, import_extra, on_one_line
+from roughgas.base.files import atomic_write
 from roughgas.statistics.errors import Estimate
 
 TEXT = "article.typ"
-QUOTED = re.compile(r'#n\("([^"]*)"\)')
-RESTITUTION, ROUGHNESSES = 0.9, (-0.8, -0.4, 0.0, 0.4, 0.8)
-"""Where the table has its values, or as near as the data have one."""
-COLUMNS = {  # experiment -> the columns of R.csv that are shown
+QUOTED_NUMBER = re.compile(r'#n\("([^"]*)"\)')
+TABLE_RESTITUTION, TABLE_ROUGHNESSES = 0.9, (-0.8, -0.4, 0.0, 0.4, 0.8)
+"""r and beta of the table, which uses the closest values in the data."""
+COLUMNS = {  # experiment -> columns of R.csv in the table
     "vibrated": ("R", "R_collisional", "R_theory"),
     "sheared": ("R", "R_collisional", "R_theory"),
     "cooling": ("R", "R_corrected", "R_theory"),
 }
-HEADS = {
+COLUMN_HEADS = {
     "R": "over time",
     "R_collisional": "over coll.",
     "R_corrected": "corrected",
@@ -40,78 +39,89 @@ def write_article(
     figures: Sequence[str | Path],
     output: str | Path,
 ) -> None:
-    """Write the PDF of the files `source`, of which article.typ is compiled.
+    """Write the PDF of the files `source`, among them article.typ, which is compiled.
 
-    It finds the others and the figures beside it, and in data.json the quoted numbers, the rows of
-    a table of R, and the verdicts. Raises InputError for a quoted number that is not known, and for
-    what Typst refuses.
+    It is compiled in a folder with the other files, the figures, and data.json, which has the
+    quoted numbers, the rows of a table of R, and the verdicts. Raises InputError for an unknown
+    quoted number, and for errors of Typst.
     """
-    typst = required("typst")
-    read = {name: Path(path).read_text("utf-8") for name, path in (("n", numbers), ("c", claims))}
-    data, judged = {"numbers": json.loads(read["n"]), "version": __version__}, json.loads(read["c"])
+    typst = import_extra("typst")
+    texts = {name: Path(path).read_text("utf-8") for name, path in (("n", numbers), ("c", claims))}
+    data, claims_content = (
+        {"numbers": json.loads(texts["n"]), "version": __version__},
+        json.loads(texts["c"]),
+    )
     (text,) = [path for path in map(Path, source) if path.name == TEXT]
     check_quoted(text.read_text("utf-8"), data["numbers"])
     with open(table, newline="", encoding="utf-8") as file:
         data["table"] = excerpt(csv.DictReader(file))
-    data |= {"scale": judged["scale"], "verdicts": [verdict(one) for one in judged["claims"]]}
-    with tempfile.TemporaryDirectory() as folder, whole_file(output) as draft:
+    data |= {
+        "scale": claims_content["scale"],
+        "verdicts": [verdict(claim) for claim in claims_content["claims"]],
+    }
+    with tempfile.TemporaryDirectory() as folder, atomic_write(output) as draft:
         for path in (*source, *figures):
             shutil.copy(path, folder)
         Path(folder, "data.json").write_text(json.dumps(data), encoding="utf-8")
-        told = {"root": folder, "ignore_system_fonts": True}
+        options = {"root": folder, "ignore_system_fonts": True}
         try:
-            draft.write_bytes(typst.compile(str(Path(folder, TEXT)), **told))
+            draft.write_bytes(typst.compile(str(Path(folder, TEXT)), **options))
         except typst.TypstError as error:
             raise InputError(TEXT, on_one_line(str(error)), "be what Typst compiles") from error
 
 
 def check_quoted(text: str, numbers: Mapping[str, str]) -> None:
-    """Raise InputError for the first number that the text quotes and that is not known."""
-    for name in QUOTED.findall(text):
+    """Raise InputError for the first number quoted in Typst's source that is not in `numbers`."""
+    for name in QUOTED_NUMBER.findall(text):
         if name not in numbers:
             raise InputError(f"number in {TEXT}", name, "be one that numbers.json holds")
 
 
-def excerpt(rows: Iterable[Mapping[str, str]]) -> dict[str, Any]:
-    """Return a table of R over beta, a row of texts each, from the rows of R.csv.
+def excerpt(rows: Iterable[Mapping[str, str]]) -> NamedValues:
+    """Return a table of R over beta (roughness) from rows of R.csv: `r`, `head` and `rows`.
 
-    At the restitution `r` next to RESTITUTION, and the roughnesses next to ROUGHNESSES, of each
-    experiment in COLUMNS. What a row lacks is an empty text.
+    All are texts. R = E_rot/(E_rot + E_trans). It is taken at the r closest to TABLE_RESTITUTION
+    and the betas closest to TABLE_ROUGHNESSES, for the experiments in COLUMNS. Missing values are
+    empty texts.
     """
-    found = [row for row in rows if row["experiment"] in COLUMNS]
-    r = _nearest({float(row["r"]) for row in found}, RESTITUTION)
-    here = {(row["experiment"], float(row["beta"])): row for row in found if float(row["r"]) == r}
-    betas = {beta for _, beta in here}
-    shown = sorted({_nearest(betas, beta) for beta in ROUGHNESSES})
+    table_rows = [row for row in rows if row["experiment"] in COLUMNS]
+    r = _nearest({float(row["r"]) for row in table_rows}, TABLE_RESTITUTION)
+    row_at = {
+        (row["experiment"], float(row["beta"])): row for row in table_rows if float(row["r"]) == r
+    }
+    betas = {beta for _, beta in row_at}
+    shown_betas = sorted({_nearest(betas, beta) for beta in TABLE_ROUGHNESSES})
     lines = []
-    for beta in shown:
+    for beta in shown_betas:
         cells = [
-            _cell(here.get((name, beta), {}), column)
+            _cell(row_at.get((name, beta), {}), column)
             for name, columns in COLUMNS.items()
             for column in columns
         ]
         lines.append([f"{beta:g}".replace("-", "−"), *cells])
-    head = ["β", *(HEADS[column] for columns in COLUMNS.values() for column in columns)]
+    head = ["β", *(COLUMN_HEADS[column] for columns in COLUMNS.values() for column in columns)]
     return {"r": f"{r:g}", "head": head, "rows": lines}
 
 
-def verdict(claim: Mapping[str, Any]) -> dict[str, str]:
-    """Return of a verdict in claims.json what the article says of it."""
-    first = claim["numbers"][0] if claim["numbers"] else None
+def verdict(claim: Record) -> dict[str, str]:
+    """Return the quotation, deciding number and verdict of an entry of claims.json, as texts."""
+    number = claim["numbers"][0] if claim["numbers"] else None
     deciding = ""
-    if first is not None and first["value"] is not None:
-        error = math.nan if first["error"] is None else first["error"]
-        deciding = f"{first['label']}: {Estimate(first['value'], error)}".replace("-", "−")
+    if number is not None and number["value"] is not None:
+        error = math.nan if number["error"] is None else number["error"]
+        deciding = f"{number['label']}: {Estimate(number['value'], error)}".replace("-", "−")
     quote = f"Ours: {claim['quote']}" if claim["ours"] else claim["quote"]
     return {"quote": quote, "deciding": deciding, "verdict": claim["verdict"]}
 
 
 def _cell(row: Mapping[str, str], column: str) -> str:
+    """Return the value of a column in a row of R.csv, with its error, as text; "" if missing."""
     if not row.get(column):
         return ""
     value, error = float(row[column]), row.get(f"{column}_stderr")
     return f"{Estimate(value, float(error))}" if error else f"{value:.4f}"
 
 
-def _nearest(values: Iterable[float], wanted: float) -> float:
-    return min(values, key=lambda one: (abs(one - wanted), one))
+def _nearest(values: Iterable[float], target: float) -> float:
+    """Return the value closest to the target, the lesser of two equally close."""
+    return min(values, key=lambda value: (abs(value - target), value))

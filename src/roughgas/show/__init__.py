@@ -1,1 +1,1 @@
-"""What people look at: figures, movies, and the interactive page."""
+"""Presentation: figures, movies, and HTML pages."""

@@ -1,7 +1,7 @@
-"""Every figure and document that the pipeline makes, as catalogue.yaml registers them.
+"""Catalogue of all figures and documents that the pipeline makes, read from catalogue.yaml.
 
-The rules, the report, and the checks of docs/results.md read this. It loads quickly, and no figure
-depends on it: a new title draws nothing anew.
+The rules, the report, and the checks of docs/results.md use it. It loads quickly, and no figure
+depends on it: a new title does not redraw the figure.
 """
 
 from pathlib import Path
@@ -11,17 +11,17 @@ import yaml
 
 
 class FigureEntry(NamedTuple):
-    """A figure, and where the report shows it."""
+    """A figure, with its heading and its title in the report."""
 
     name: str
-    part: str  # of the catalogue: paper, beyond, hard_cases, accuracy
+    section: str  # of the catalogue: paper, beyond, hard_cases, accuracy
     heading: str
     title: str
-    shows: tuple[str, ...] = ()  # experiments or studies
 
 
 class DocumentEntry(NamedTuple):
-    """A table or a movie that the report shows as a page of its own."""
+    """A table or a movie that has a separate page in the report, with the path of its `source`;
+    {scale} and {folder} in paths are placeholders."""
 
     name: str
     heading: str
@@ -31,25 +31,20 @@ class DocumentEntry(NamedTuple):
 
 
 CATALOGUE = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
-HEADINGS = {name: part["heading"] for name, part in CATALOGUE.items()}
+HEADINGS = {name: section["heading"] for name, section in CATALOGUE.items()}
 FIGURES = {
-    name: FigureEntry(name, part_name, part["heading"], one["title"], tuple(one.get("shows", ())))
-    for part_name, part in CATALOGUE.items()
-    for name, one in part["figures"].items()
+    name: FigureEntry(name, section_name, section["heading"], figure["title"])
+    for section_name, section in CATALOGUE.items()
+    for name, figure in section["figures"].items()
 }
 DOCUMENTS = {
-    name: DocumentEntry(name, part["heading"], **one)
-    for part in CATALOGUE.values()
-    for name, one in part["documents"].items()
+    name: DocumentEntry(name, section["heading"], **document)
+    for section in CATALOGUE.values()
+    for name, document in section["documents"].items()
 }
 
 
-def figures_of(*parts: str) -> list[str]:
-    """Return the names of all figures in parts of the catalogue."""
-    return [entry.name for entry in FIGURES.values() if entry.part in parts]
-
-
-def shown_in(*parts: str) -> list[str]:
-    """Return the experiments or studies that the figures of these parts show, each once."""
-    shown = [one for name in figures_of(*parts) for one in FIGURES[name].shows]
-    return list(dict.fromkeys(shown))
+def figures_of(*sections: str) -> list[str]:
+    """Return the names of all figures in the catalogue's sections called `sections`, such as
+    paper."""
+    return [entry.name for entry in FIGURES.values() if entry.section in sections]

@@ -1,7 +1,12 @@
-"""The interactive page: one HTML file that holds its data and its program, and loads nothing.
+"""The interactive page: an HTML file that contains its data and its program, and loads nothing.
 
-Numbers of points are those of the reduced dataset, to the last bit; curves and time series, which
-are only looked at, are rounded.
+Results of points have all bits of the reduced dataset; curves and time series, which are only
+plotted, are rounded. Functions called *_record return a dictionary for JSON, in the form that the
+page's program reads.
+
+R = E_rot/(E_rot + E_trans), from energies per degree of freedom; r is the normal restitution, beta
+the roughness. The coordinates of a point are its value on the third axis of the sweep (None without
+a third axis), r, and beta.
 """
 
 import math
@@ -11,17 +16,17 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base import InputError, from_json
+from roughgas.base import InputError, NamedValues, from_json
 from roughgas.base.files import PACKAGE
-from roughgas.config.reading import read_yaml
+from roughgas.base.reading import read_yaml
 from roughgas.data.netcdf import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
-from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, third_axis
-from roughgas.data.variables import CLOCKS
+from roughgas.data.reduced import STEADY_SHARE, particles_of, read_reduced
+from roughgas.data.variables import CLOCKS, third_axis
 from roughgas.show import pages
-from roughgas.show.style import LOOKS
+from roughgas.show.style import LINE_STYLES
 from roughgas.statistics.errors import block_means
-from roughgas.theory.prediction import equation_of, over_collisions, predicted_ratio
+from roughgas.theory.prediction import describe_collisional_average, equation_of, predicted_ratio
 
 DASHES: dict[Any, list[int]] = {"-": [0], "--": [6, 4], "-.": [6, 3, 1, 3]}  # in pixels
 NUMBERS = {
@@ -34,14 +39,14 @@ NUMBERS = {
     "collisions": "collisions",
     "seconds": "kernel_seconds",
 }
-"""What is shown of a point: its name in the page, and in the reduced dataset, if it is there."""
+"""Results of a point: names in the page, and in the reduced dataset, which may lack some."""
 GRID = -np.cos(np.linspace(0.0, np.pi, 241))
-"""Roughness at which theory is drawn as a curve, closest where it is steepest: at the ends."""
+"""Roughness along curves of theory, densest at the ends, where the curves are steepest."""
 PROGRAM = ("uplot/uPlot.iife.min.js", "picture.js", "plots.js", "explore.js")
-LONGEST, LEAST = 200, 40
-"""The most values that are shown of a time series, and the fewest where there are many points."""
-PLACES = 60_000
-"""Values of all time series together, about: with them the page has less than 3 MB."""
+MAX_SERIES_LENGTH, MIN_SERIES_LENGTH = 200, 40
+"""Largest length of a time series in the page, and its length if there are many points."""
+MAX_SERIES_VALUES = 60_000
+"""Approximate length of all time series together; it keeps the page below 3 MB."""
 DIGITS = 5
 
 
@@ -54,24 +59,30 @@ def write_page(
 ) -> None:
     """Write the page of the experiments whose reduced datasets are `inputs`, in this order.
 
-    The folder `points` has seed 1 of each of their points, as the pipeline leaves it; `config` (by
-    default the package's own) describes them. Raises InputError where a point is missing, where
-    nothing spins, and for several scales at once.
+    The folder `points` has the datasets of seed 1 of all points, laid out as by the pipeline.
+    Descriptions of experiments are in `config`, by default the package's configuration. Raises
+    InputError if a point is missing, if particles do not spin, and for several scales.
     """
-    known = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
+    descriptions = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
     paths = list(inputs)
     number = sum(int((read_reduced(path).n_seeds > 0).sum()) for path in paths)
-    longest = min(LONGEST, max(LEAST, PLACES // max(number, 1)))
-    experiments = [experiment(path, Path(points), longest) for path in paths]
-    for one in experiments:
-        described = known.get(one["name"], {}).get("description", one["name"].replace("_", " "))
-        one["description"] = described.rstrip(".")
-    scales = sorted({one["scale"] for one in experiments})
+    length = min(MAX_SERIES_LENGTH, max(MIN_SERIES_LENGTH, MAX_SERIES_VALUES // max(number, 1)))
+    experiments = [experiment(path, Path(points), length) for path in paths]
+    for record in experiments:
+        description = descriptions.get(record["name"], {}).get(
+            "description", record["name"].replace("_", " ")
+        )
+        record["description"] = description.rstrip(".")
+    scales = sorted({record["scale"] for record in experiments})
     if len(scales) != 1:
         raise InputError("scale of the datasets", " and ".join(scales) or "none", "be one")
     looks = [
-        {"colour": one.colour, "symbol": one.marker, "dash": DASHES.get(one.line) or one.line[1]}
-        for one in LOOKS
+        {
+            "colour": style.colour,
+            "symbol": style.marker,
+            "dash": DASHES.get(style.line) or style.line[1],
+        }
+        for style in LINE_STYLES
     ]
     data = {"scale": scales[0], "grid": rounded(GRID), "looks": looks, "experiments": experiments}
     pages.write_page(
@@ -84,12 +95,15 @@ def write_page(
     )
 
 
-def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -> dict[str, Any]:
-    """Return an experiment with its points and their theory, and `longest` values of each series.
+def experiment(
+    reduced_path: str | Path, points: Path, length: int = MAX_SERIES_LENGTH
+) -> NamedValues:
+    """Return a dictionary for JSON of an experiment: its settings, theory, and points, with time
+    series of up to `length` values.
 
-    They are read from its reduced dataset, and from seed 1 of each point, anywhere below
-    `points`/EXPERIMENT. Raises InputError where nothing spins, so that there is no R, and where a
-    point is not there.
+    It is read from the reduced dataset at `reduced_path`, and from seed 1 of each point below
+    `points`/EXPERIMENT. Raises InputError if particles do not spin, so that there is no R, and if a
+    point is missing.
     """
     data = read_reduced(reduced_path)
     name, swept = data.attrs["experiment"], third_axis(data.attrs)
@@ -98,10 +112,12 @@ def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -
     runs, variants = _first_seeds(points / name), [(None, data)]
     if swept is not None:
         values = data[swept].values.tolist()
-        variants = [(one, data.sel({swept: one}).assign_attrs({swept: one})) for one in values]
-    about: dict[str, Any] = next((about for _, about in runs.values()), {})
-    settings = from_json(about.get("experiment_json", "{}"), "settings")
-    size = {"box": settings.get("box"), "packing": about.get("packing")}
+        variants = [
+            (value, data.sel({swept: value}).assign_attrs({swept: value})) for value in values
+        ]
+    attributes: dict[str, Any] = next((attributes for _, attributes in runs.values()), {})
+    settings = from_json(attributes.get("experiment_json", "{}"), "settings")
+    size = {"box": settings.get("box"), "packing": attributes.get("packing")}
     return {
         "name": name,
         "scale": data.attrs["scale"],
@@ -110,99 +126,133 @@ def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,
-        "over_collisions": over_collisions(data.attrs, data),
+        "over_collisions": describe_collisional_average(data.attrs, data),
         "effects": list(settings.get("effects", {})),
-        "variants": [_variant(one, value, runs, longest) for value, one in variants],
+        "variants": [_variant_record(variant, value, runs, length) for value, variant in variants],
     }
 
 
-def _variant(data, value, runs, longest):
-    """Return one value on the third axis: a series for each r, the most elastic first."""
+def _variant_record(data, third_value, first_seeds, max_length):
+    """Return the results at a single value on the third axis: points and theory for each r, in
+    decreasing order of r.
+
+    `data` is the part of the reduced dataset at `third_value`, `first_seeds` the result of
+    `_first_seeds`; time series have up to `max_length` values.
+    """
     rows = [data.sel(r=r) for r in sorted(data.r.values.tolist(), reverse=True)]
-    series = [_series(row, value, runs, longest) for row in rows if row.n_seeds.any()]
+    series = [
+        _series_record(row, third_value, first_seeds, max_length)
+        for row in rows
+        if row.n_seeds.any()
+    ]
     return {"name": series[0].pop("variant"), "series": series}
 
 
-def _series(data, value, runs, longest):
-    """Return all points at one r, over beta, with the curve that theory has for them."""
-    r, places = data.r.item(), [data.sel(beta=beta) for beta in data.beta[data.n_seeds > 0]]
-    found = [_run(runs, value, r, place.beta.item()) for place in places]
-    _, about = found[0]
+def _series_record(data, third_value, first_seeds, max_length):
+    """Return the results at a single r: its points over beta, and the curve of theory.
+
+    `data` is the part of the reduced dataset at this r and at `third_value`, `first_seeds` the
+    result of `_first_seeds`; time series have up to `max_length` values.
+    """
+    r, points = data.r.item(), [data.sel(beta=beta) for beta in data.beta[data.n_seeds > 0]]
+    seed_runs = [_first_seed_at(first_seeds, third_value, r, point.beta.item()) for point in points]
+    _, attributes = seed_runs[0]
     return {
-        "r": about["r_label"],
-        "variant": about.get("variant"),
+        "r": attributes["r_label"],
+        "variant": attributes.get("variant"),
         "curve": rounded(predicted_ratio(data.attrs, r, GRID)),
-        "points": [_point(*one, longest) for one in zip(places, found, strict=True)],
+        "points": [
+            _point_record(*pair, max_length) for pair in zip(points, seed_runs, strict=True)
+        ],
     }
 
 
-def _point(data, run, longest):
-    path, about = run
+def _point_record(data, first_seed, max_length):
+    """Return the results at a point: averages, theory, command, and time series of its seed 1.
+
+    `data` is the part of the reduced dataset at this point, `first_seed` the path and attributes of
+    its seed 1; time series have up to `max_length` values.
+    """
+    path, attributes = first_seed
     shown = {name: exact(data[column]) for name, column in NUMBERS.items() if column in data}
     return shown | {
-        "beta": about["beta_label"],
+        "beta": attributes["beta_label"],
         "theory": exact(predicted_ratio(data.attrs, data.r.item(), data.beta.item())),
-        # None where there is too little to tell
-        "steady": None if data.equilibrated < 0 else bool(data.equilibrated > EQUILIBRATED),
+        # None if too little was measured to decide
+        "steady": None if data.equilibrated < 0 else bool(data.equilibrated > STEADY_SHARE),
         "contact_time": exact(data.get("contact_time_fraction", 0.0)),
-        # as Snakemake knows it
+        # the path that Snakemake makes
         "target": str(path.parent if path.parent.name == "seeds" else path),
-        "command": about["command"],
-        "over_time": time_series(read_point(path), longest),
+        "command": attributes["command"],
+        "over_time": time_series(read_point(path), max_length),
     }
 
 
 def _first_seeds(folder):
-    """Return where seed 1 of each point in a folder is, and the attributes of its dataset, by the
-    point's place: its value on the third axis (None without one), r, and beta."""
-    found = {}
+    """Return the path and the attributes of seed 1 of each point in a folder, by the coordinates of
+    the point."""
+    first_seeds = {}
     for path in sorted(folder.rglob("seed1.nc")):
         with opened(path, POINT) as file:
-            about = attributes_of(file)
-        require(about, ("r_label", "beta_label", "command"), path)
-        place = _place(about.get("swept_value"), about["r"], about["beta"])
-        found.setdefault(place, (path, about))
-    return found
+            attributes = attributes_of(file)
+        require(attributes, ("r_label", "beta_label", "command"), path)
+        coordinates = _coordinates(
+            attributes.get("swept_value"), attributes["r"], attributes["beta"]
+        )
+        first_seeds.setdefault(coordinates, (path, attributes))
+    return first_seeds
 
 
-def _run(runs, *place):
-    if _place(*place) not in runs:
-        where = ", ".join(str(part) for part in place if part is not None)
-        raise InputError("point (..., r, beta)", where, "have its seed 1 in the folder of points")
-    return runs[_place(*place)]
+def _first_seed_at(first_seeds, *coordinates):
+    """Return the path and attributes of seed 1 of the point at `coordinates`, from `first_seeds`.
+    Raises InputError if it is missing."""
+    if _coordinates(*coordinates) not in first_seeds:
+        coordinates_text = ", ".join(
+            str(coordinate) for coordinate in coordinates if coordinate is not None
+        )
+        raise InputError(
+            "point (..., r, beta)", coordinates_text, "have its seed 1 in the folder of points"
+        )
+    return first_seeds[_coordinates(*coordinates)]
 
 
-def _place(value, r, beta):
-    """Return the place of a point; a number is one even if words beside it made it a word."""
+def _coordinates(third_value, r, beta):
+    """Return the coordinates of a point as numbers; only a `third_value` that is no number stays a
+    word, or None.
+
+    A third axis with both numbers and words stores its numbers as text.
+    """
     try:
-        return float(value), float(r), float(beta)
+        return float(third_value), float(r), float(beta)
     except (TypeError, ValueError):
-        return value, float(r), float(beta)
+        return third_value, float(r), float(beta)
 
 
-def time_series(seed: Any, longest: int = LONGEST) -> dict[str, Any]:
-    """Return R and both energies of a seed (a Dataset) over time, as means over blocks, at most
-    `longest` of them.
+def time_series(seed: Any, length: int = MAX_SERIES_LENGTH) -> NamedValues:
+    """Return R and both energies of a seed (a Dataset) over time, as means over at most `length`
+    blocks.
 
-    `clock` is "time", in T, or "collisions_per_particle"; `block` is the number of samples in a
-    mean; `measured` is the window in which R is measured, its ends None where they are unknown.
+    The result has lists of equal length: `at`, the times, `R`, `E_trans` and `E_rot`. `clock` is
+    the kind of times, "time", in T, or "collisions_per_particle"; `block` is the number of samples
+    in a mean; `measured` is the window of the measurement, with None for unknown ends. Energies are
+    per degree of freedom, in m a^2/T^2, of a cooling gas in units of its initial E_trans.
     """
     clock = next(name for name in CLOCKS[::-1] if name in seed)
     columns = {"at": seed[clock].values} | {
         name: seed[f"{name}_series"].values for name in ("R", "E_trans", "E_rot")
     }
     window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
-    block = math.ceil(columns["at"].size / longest)
+    block = math.ceil(columns["at"].size / length)
     thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
     return {"clock": clock, "block": block, "measured": window} | thinned
 
 
 def exact(value: Any) -> float | int | None:
-    """Return a number as it is, to the last bit; None if it is not finite."""
+    """Return a scalar as a Python number with all its bits; None if it is not finite."""
     number = np.asarray(value).item()
     return number if math.isfinite(number) else None
 
 
 def rounded(values: Any) -> list[float | None]:
-    """Return numbers to DIGITS digits, for what is only looked at; None if one is not finite."""
+    """Return numbers rounded to DIGITS significant digits; None for infinite ones and NaN."""
     return [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in np.asarray(values)]

@@ -1,18 +1,17 @@
-"""Figures of experiments: by name, and of any reduced dataset, beside theory."""
+"""Drawing of figures into files: figures of studies by name, and of single datasets."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roughgas.base import InputError, not_one_of
-from roughgas.base.files import module_of
-from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened, read_groups
+from roughgas.base import InputError
+from roughgas.base.files import study_module
+from roughgas.data.netcdf import POINT, REDUCED, file_type_of, opened, read_groups
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_by_name, read_reduced
-from roughgas.results.evidence import read_rows
+from roughgas.results.comparison import read_rows
 from roughgas.show import style
-from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.theory.prediction import ratio_of_point
 
 if TYPE_CHECKING:
@@ -21,57 +20,47 @@ if TYPE_CHECKING:
 
 
 def draw(
-    name: str, inputs: Iterable[str | Path], *, output: Iterable[str | Path], slide: bool = False
-) -> None:
-    """Draw the figure `name` of the paper from the reduced datasets at `inputs`, in any order.
-
-    Each output is a .pdf, .png or .svg, of 16 to 9 for a `slide`. Raises InputError for an unknown
-    figure, another kind of file, experiments other than those that the figure shows, and those
-    that were swept otherwise.
-    """
-    if name not in (known := figures_of("paper")):
-        raise not_one_of("figure", name, known)
-    # by name: figures of studies, which are drawn here, too, do not depend on those of the paper
-    paper = import_module("roughgas.show.figures.paper")
-    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
-    _draw(name, getattr(paper, name), FIGURES[name].shows, datasets, output, slide)
-
-
-def draw_of_study(
     folder: str | Path,
     figure: str,
     inputs: Iterable[str | Path],
     *,
     shows: Sequence[str],
     output: Iterable[str | Path],
+    slide: bool = False,
 ) -> None:
-    """Draw a figure of the study in `folder`, which `shows` these experiments, and `tasks`, what
-    its tasks have found.
+    """Draw a figure of the study in `folder` from datasets at `inputs`, in any order.
 
-    Its figure.py has `draw` for the figure that has the study's name, and draw_X for NAME_X, which
-    take the datasets in the order of `shows`. Raises InputError as `draw`, and where figure.py has
-    no such function.
+    `shows` lists what the figure shows: experiments, modules with tasks, or the word "tasks" if the
+    study has a single such module. `output` lists paths of .pdf, .png or .svg files, 16 to 9 for a
+    `slide`. The study's figure.py has `draw` for the figure named like the study, draw_X for
+    STUDY_X, and a function named like any other figure; they take the datasets in this order.
+    Raises InputError if figure.py lacks the function, for another type of output, for other data
+    than the figure shows, and for data with other axes.
     """
-    part = figure.removeprefix(Path(folder).name)
-    function = getattr(module_of(folder, "figure"), f"draw{part}", None)
+    study = Path(folder).name
+    name = f"draw{figure.removeprefix(study)}" if figure.startswith(study) else figure
+    function = getattr(study_module(folder, "figure"), name, None)
     if function is None:
-        raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
-    names = [Path(folder).name if one == "tasks" else one for one in shows]
+        raise InputError(f"studies/{study}/figure.py", "it", f"have {name}()")
+    names = [study if shown == "tasks" else shown for shown in shows]
     datasets = {name: data for path in inputs for name, data in read_by_name(path).items()}
-    _draw(figure, function, names, datasets, output)
+    # a dataset of several modules with tasks may contain data that the figure does not show
+    surplus = {name for name, data in datasets.items() if "experiment" not in data.attrs}
+    datasets = {k: data for k, data in datasets.items() if k in names or k not in surplus}
+    _draw(figure, function, names, datasets, output, slide)
 
 
 def movie_of_study(folder: str, input: str | Path, *, output: str | Path) -> None:
-    """Write the movie of what the tasks of the study in `folder` have found: its movie.py has
-    `draw(data, path)`."""
+    """Write the movie of results of tasks of the study in `folder`, by `draw(data, path)` in its
+    movie.py."""
     (data,) = read_groups(input).values()
-    module_of(folder, "movie").draw(data, Path(output))
+    study_module(folder, "movie").draw(data, Path(output))
 
 
 def draw_evidence(input: str | Path, *, output: Iterable[str | Path]) -> None:
-    """Draw the histogram of the rows of evidence in a CSV."""
+    """Draw the histograms of the rows of evidence in a CSV file."""
     figure = import_module("roughgas.show.figures.evidence")
-    rows = [row for _, row in read_rows(input)]
+    rows = read_rows(input)
     style.draw(lambda: figure.draw(rows), output)
 
 
@@ -83,12 +72,21 @@ def _draw(
     outputs: Iterable[str | Path],
     slide: bool = False,
 ) -> None:
+    """Draw a figure called `name` by `function` of its datasets into each of `outputs`, of 16 to 9
+    for a `slide`.
+
+    The function takes the `datasets`, by name, in the order of the names in `shows`. Raises
+    InputError for other datasets than these, and for datasets that lack a coordinate, value or
+    variable.
+    """
     if set(datasets) != set(shows):
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(shows)}")
     try:
-        style.draw(lambda: function(*(datasets[one] for one in shows)), outputs, slide)
+        style.draw(lambda: function(*(datasets[shown] for shown in shows)), outputs, slide)
     except KeyError as error:
-        swept = "; ".join(f"{one} over {', '.join(map(str, datasets[one].sizes))}" for one in shows)
+        swept = "; ".join(
+            f"{shown} over {', '.join(map(str, datasets[shown].sizes))}" for shown in shows
+        )
         raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error
 
 
@@ -99,23 +97,25 @@ def plot(
     of: str | None = None,
     **chosen: Sequence[float],
 ) -> list[str]:
-    """Draw the reduced dataset at `path`, or the time series of a point, or what it is told `of`,
-    into `outputs`, each a .pdf, .png or .svg.
+    """Draw a reduced dataset, the time series of a point, or the variable `of` an observable of a
+    point, into `outputs`, each a .pdf, .png or .svg.
 
-    Returns a line for each coordinate of which not all values are shown. Raises InputError as
-    `sweep.draw` does, for another kind of file, and for an axis or values of a point.
+    `path` is the path of the dataset. For a reduced one `over` is the horizontal axis, and `chosen`
+    has the values of r and beta to show, as in `sweep.draw`. Returns a message for each coordinate
+    whose values are not all shown. Raises InputError as `sweep.draw`, for another type of file, and
+    for an axis or values chosen for a point.
     """
     from roughgas.show.figures import sweep
 
     with opened(path, REDUCED, POINT) as file:
-        is_point = kind_of(file) == POINT
+        is_point = file_type_of(file) == POINT
     if is_point and any((over, *chosen.values())):
         raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
     if of is not None and not is_point:
         raise InputError("dataset", path, "be a point for --of")
     if not is_point:
         data = read_reduced(path)
-        lines = sweep.left_out(data, over, chosen)
+        lines = sweep.coordinates_not_shown(data, over, chosen)
         style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
         return lines
     point = read_point(path)

@@ -1,7 +1,7 @@
-"""One look for all figures, still or moving: readable in print, in grey, and for the colour-blind.
+"""Style of all figures and movies: readable in print, in grey, and for the colour-blind.
 
-The same data give the same bytes. There is no pyplot, hence no display, and no state that figures
-share. A figure that moves is an .mp4 that any browser plays, or a .gif that loops forever.
+The same data give the same bytes. Without pyplot no display is needed, and figures share no state.
+A movie is an .mp4 that any browser plays, or a .gif that loops forever.
 """
 
 import subprocess
@@ -18,19 +18,19 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
 from roughgas.base import InputError
-from roughgas.base.files import whole_file
+from roughgas.base.files import atomic_write
 
 SLIDE = 10.0, 5.625  # inches: 16 to 9
 WIDTH, TWO_WIDE, HEIGHT = 4.4, 7.0, 4.8
-"""Inches, in print: of one panel, half of a page of the README; of two, a page of a journal; and
-how high R with its residuals is. Letters have 7 points or more."""
-# what a matplotlibrc of the user may change, except where figures are shown
-PLAIN = {
+"""Inches, in print: width of one panel (half a page of the README), of two (a page of a journal),
+and height of R with its residuals. Letters have 7 points or more."""
+# undoes the user's matplotlibrc, except for backends
+DEFAULT_PARAMETERS = {
     name: value
     for name, value in rcParamsDefault.items()
     if not name.startswith(("backend", "interactive", "toolbar", "webagg"))
 }
-PARAMETERS = PLAIN | {
+PARAMETERS = DEFAULT_PARAMETERS | {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that figures are the same anywhere
     "mathtext.fontset": "dejavusans",
     "font.size": 9,
@@ -54,7 +54,7 @@ PARAMETERS = PLAIN | {
     "svg.hashsalt": "roughgas",
     "savefig.dpi": 200,
 }
-ON_PAGES = 140  # dots per inch of what is no line in an .svg, or a page takes long to load
+SVG_DPI = 140  # of images in an .svg; with more, pages load slowly
 METADATA = {
     ".pdf": {"CreationDate": None, "Creator": "roughgas"},
     ".png": {"Software": "roughgas"},
@@ -66,20 +66,20 @@ Style = dict[str, Any]
 """Keywords of matplotlib."""
 
 
-class Look(NamedTuple):
-    """What tells a series from the others: colour, marker and line at once."""
+class LineStyle(NamedTuple):
+    """Colour, marker and line of a series, as matplotlib names them: series differ in all three."""
 
     colour: str
     marker: str
     line: str | tuple
 
 
-LOOKS = (  # colours of Okabe and Ito
-    Look("#0072B2", "o", "-"),
-    Look("#D55E00", "s", "--"),
-    Look("#009E73", "^", "-."),
-    Look("#CC79A7", "D", (0, (9, 2))),
-    Look("#E69F00", "v", (0, (5, 1, 1, 1, 1, 1))),
+LINE_STYLES = (  # colours of Okabe and Ito
+    LineStyle("#0072B2", "o", "-"),
+    LineStyle("#D55E00", "s", "--"),
+    LineStyle("#009E73", "^", "-."),
+    LineStyle("#CC79A7", "D", (0, (9, 2))),
+    LineStyle("#E69F00", "v", (0, (5, 1, 1, 1, 1, 1))),
 )
 THEORY = "#222222"
 GREY = "#555555"
@@ -87,9 +87,10 @@ FAINT = "#888888"
 
 
 def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: bool = False) -> None:
-    """Draw `figure()` in this style into each of `outputs`, in the shape of a `slide` if asked for.
+    """Draw the figure that the function `figure` returns in this style, and save it as each of
+    `outputs`; a `slide` has 16 to 9.
 
-    Raises InputError if one of them is none of .pdf, .png and .svg.
+    Raises InputError for an output other than .pdf, .png and .svg.
     """
     paths = [Path(output) for output in outputs]
     for output in paths:
@@ -103,43 +104,49 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: boo
 
 
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
-    """Write `figure` to each of `outputs` (.pdf, .png or .svg), whole or not at all.
+    """Write `figure` to each of `outputs` (.pdf, .png or .svg), atomically.
 
-    The .png first, whatever the order, and the others in its layout.
+    The .png comes first, and the others have its layout.
     """
     for output in sorted(map(Path, outputs), key=lambda path: path.suffix != ".png"):
-        with whole_file(output) as draft:
-            kind = output.suffix
-            how: dict[str, Any] = {"dpi": ON_PAGES} if kind == ".svg" else {}
-            figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind], **how)
+        with atomic_write(output) as draft:
+            suffix = output.suffix
+            options: dict[str, Any] = {"dpi": SVG_DPI} if suffix == ".svg" else {}
+            figure.savefig(
+                draft, format=suffix.removeprefix("."), metadata=METADATA[suffix], **options
+            )
         figure.set_layout_engine("none")
 
 
-def add_circles(axes: Axes, **look: Any) -> EllipseCollection:
-    """Add a collection of circles, none as yet, whose sizes are in the units of the axes."""
+def add_circles(axes: Axes, **properties: Any) -> EllipseCollection:
+    """Add to `axes` an empty collection of circles, with sizes in the units of the axes, and return
+    it; `properties` are matplotlib's, such as linewidth."""
     circles = EllipseCollection([], [], [], units="xy", offsets=[], transOffset=axes.transData)
-    circles.set(**look)
+    circles.set(**properties)
     axes.add_collection(circles)
     return circles
 
 
-def move(circles: EllipseCollection, x: np.ndarray, y: np.ndarray, diameter: Any = 2.0) -> None:
-    """Bring circles to these centres (N,), with one diameter or (N,) of them."""
-    size = np.full(len(x), 1.0) * diameter
-    circles.set(widths=size, heights=size, angles=0.0 * size)
+def move_circles(
+    circles: EllipseCollection, x: np.ndarray, y: np.ndarray, diameter: Any = 2.0
+) -> None:
+    """Set the centres (`x`, `y`), (N,) each, and the diameters, a number or (N,), of circles in the
+    units of their axes."""
+    diameters = np.full(len(x), 1.0) * diameter
+    circles.set(widths=diameters, heights=diameters, angles=0.0 * diameters)
     circles.set_offsets(np.column_stack([x, y]))
 
 
 # x264's constant rate factor: lower is better and larger
 MP4 = "-vcodec libx264 -pix_fmt yuv420p -crf 28 -preset slow -f mp4"
-# one palette for all frames, and only the part of each frame that changes; dithering would flicker
+# one palette for all frames, and only the changed rectangle of each frame; dithering would flicker
 PALETTE = "split[a][b];[a]palettegen=max_colors=32[p];[b][p]paletteuse=dither=none"
 GIF = f"-filter_complex {PALETTE}:diff_mode=rectangle -loop 0 -f gif"
 ENCODERS = {".mp4": MP4, ".gif": GIF}
 
 
-def check_kind(path: str | Path) -> None:
-    """Raise InputError if `path` does not end as a movie does."""
+def check_movie_suffix(path: str | Path) -> None:
+    """Raise InputError if `path` does not end in .mp4 or .gif."""
     if Path(path).suffix not in ENCODERS:
         raise InputError("file", path, f"end in {' or '.join(ENCODERS)}")
 
@@ -150,41 +157,49 @@ def write_movie(
     frames: Iterable[int],
     per_second: float,
 ) -> None:
-    """Write a movie to `path` in the style of all figures, whole or not at all.
+    """Write a movie to `path` (.mp4 or .gif) in the style of all figures, atomically.
 
-    `picture` returns a figure, and a function that brings it to each of `frames`. Its width and
-    height must be even numbers of pixels; its layout stays as it is at the start. Raises InputError
-    for another kind of file, OSError.
+    `picture` returns a figure, and a function that draws the frame of a number; these numbers come
+    from `frames`, and `per_second` frames are shown a second. The width and height of the figure
+    must be even numbers of pixels; its layout is fixed at the first frame. Raises InputError for
+    another type of file, OSError.
     """
-    check_kind(path)
-    with rc_context(PARAMETERS), whole_file(path) as draft:
+    check_movie_suffix(path)
+    with rc_context(PARAMETERS), atomic_write(path) as draft:
         figure, show = picture()
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         figure.set_layout_engine("none")
         encoder = _encoder(path, draft, canvas.get_width_height(), per_second)
         try:
-            with suppress(BrokenPipeError):  # the encoder ended; it says why
+            with suppress(BrokenPipeError):  # the encoder ended, with a reason on stderr
                 for frame in frames:
                     show(frame)
                     canvas.draw()
                     encoder.stdin.write(canvas.buffer_rgba())
-            _, said = encoder.communicate()
+            _, messages = encoder.communicate()
             if encoder.returncode:
-                why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]
-                raise OSError(None, f"not encoded: {why}", str(path))
+                reason, *_ = messages.decode(errors="replace").splitlines() or [
+                    "the encoder was stopped"
+                ]
+                raise OSError(None, f"not encoded: {reason}", str(path))
         finally:
             encoder.kill()
             encoder.wait()
 
 
 def _encoder(path, draft, size, per_second):
+    """Start the process that encodes a movie from frames on its standard input, pixels in RGBA.
+
+    It writes to `draft`, in the format of the suffix of `path`; `size` is (width, height) in
+    pixels, `per_second` the number of frames a second.
+    """
     from imageio_ffmpeg import get_ffmpeg_exe
 
     command = [get_ffmpeg_exe(), "-y", "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgba"]
     command += ["-s", "{}x{}".format(*size), "-r", f"{per_second:g}", "-i", "-"]
     command += [*ENCODERS[Path(path).suffix].split(), str(draft)]
-    # in a session of its own, so that Ctrl-C does not reach it first
+    # in a new session: Ctrl-C must not reach the encoder before this process
     return subprocess.Popen(
         command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
     )

@@ -1,26 +1,29 @@
-"""The log of contacts of a run, as variables of a point."""
-
-from typing import Any
+"""The contact log of a run as variables of a point."""
 
 import numpy as np
 
+from roughgas.base import NamedValues
 from roughgas.kernel.state import NOBODY, Log
+from roughgas.simulation.free_flight import in_starting_order
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.paths import in_order
 
-OF_PARTNERS = {"species": -1, "radius": np.nan, "mass": np.nan, "inertia": np.nan}
-"""What is logged of partners that differ, and what a wall has in its place."""
+WALL_VALUES = {"species": -1, "radius": np.nan, "mass": np.nan, "inertia": np.nan}
+"""Logged quantities of partners in a mixture, and the value that stands for a wall."""
 
 
-def logged(gas: Gas, log: Log) -> dict[str, Any]:
-    """Return the variables `logged_...` of the last contacts, the earliest first, and how many
-    before them are lost."""
+def contact_log_variables(gas: Gas, log: Log) -> NamedValues:
+    """Return the variables `logged_...` of a point, the last contacts of a gas from its `log`.
+
+    Contacts are along the first axis, oldest first: times, partners (particle numbers in the order
+    of the start, NOBODY for a wall), normals, positions, and the velocities and spins before and
+    after. The log is a ring buffer: `contacts_lost` counts the contacts that were overwritten.
+    """
     state, D = gas.state, len(gas.scene.box)
-    kept, made = log.rows, int(log.made[0])
-    lost = max(0, made - len(kept))
-    rows = np.roll(kept, -made, axis=0) if lost else kept[:made]
+    buffer, contacts = log.rows, int(log.made[0])
+    lost = max(0, contacts - len(buffer))
+    rows = np.roll(buffer, -contacts, axis=0) if lost else buffer[:contacts]
     partners = rows[:, 1:3].astype(int)
-    found = {
+    variables = {
         "contacts_lost": lost,
         "instant": ["before", "after"],
         "logged_time": rows[:, 0],
@@ -30,9 +33,11 @@ def logged(gas: Gas, log: Log) -> dict[str, Any]:
         "logged_velocity": rows[:, 3 + 2 * D : 3 + 6 * D].reshape(len(rows), 2, 2, D),
     }
     if state.spin is not None:
-        found["logged_spin"] = rows[:, 3 + 6 * D :].reshape(len(rows), 2, 2, state.spin.shape[1])
+        variables["logged_spin"] = rows[:, 3 + 6 * D :].reshape(
+            len(rows), 2, 2, state.spin.shape[1]
+        )
     if state.bodies is not None:
-        for name, of_wall in OF_PARTNERS.items():
-            values = in_order(state, getattr(state.bodies, name))[partners]
-            found[f"logged_{name}"] = np.where(partners == NOBODY, of_wall, values)
-    return found
+        for name, wall_value in WALL_VALUES.items():
+            values = in_starting_order(state, getattr(state.bodies, name))[partners]
+            variables[f"logged_{name}"] = np.where(partners == NOBODY, wall_value, values)
+    return variables

@@ -1,327 +1,448 @@
-"""A gas under way: the one loop that points, movies, films and studies drive.
+"""A gas: a scene, its state, and the methods that advance and sample it.
 
-A Gas is a scene and a state. Whoever drives it says how far it goes and when it is sampled. Samples
-only look at the state: a run that is cut into pieces keeps its bits, if a cooling gas is refreshed
-after the same collisions.
+Here `per_particle` is a number of collisions per particle: each collision counts for both partners.
+`Columns` are samples by column name (see roughgas.kernel.record.columns); a `Sampling` says when
+the kernel takes samples. A batch holds the samples of one call of the kernel.
+
+The caller of a Gas decides how far it advances and when it is sampled. Samples do not change the
+state: the bits of a run do not depend on its division into calls of the kernel.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from roughgas.base import NeedsError
-from roughgas.kernel.record import Sampling
-from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State
+from roughgas.kernel.loop import REACHED
+from roughgas.kernel.record import RawFrames, Sampling, allocate_frames, columns, record
+from roughgas.kernel.state import (
+    ALTERED_RESTITUTIONS,
+    COLLISIONS,
+    EXPONENT,
+    LAST_FIRST,
+    LAST_SECOND,
+    State,
+)
 from roughgas.scene import Scene, elastic
 from roughgas.scene.initial import initial_state
-from roughgas.simulation import restart
-from roughgas.simulation.energies import (
-    SUMS,
-    Columns,
-    Energies,
-    EnergyBalance,
-    as_columns,
-    balance,
-    energies_of,
+from roughgas.scene.settings import SceneSettings
+from roughgas.simulation import checkpoint
+from roughgas.simulation.energies import CONTACT_SUMS, Columns, Energies, energies_of
+from roughgas.simulation.energy_balance import EnergyBalance, balance
+from roughgas.simulation.free_flight import positions_and_velocities
+from roughgas.simulation.initial_states import InitialState, state_from
+from roughgas.simulation.run_failures import (
+    early_end_error,
+    hit_limit,
+    jam_error,
+    jam_limit,
+    time_of,
 )
-from roughgas.simulation.journal import COSTS
-from roughgas.simulation.recorder import Recorder, most_in, now
-from roughgas.simulation.restart import Initial, positions_and_velocities, state_from
 
-if TYPE_CHECKING:
-    from roughgas.simulation.observing import Observer
+CALLS_PER_RUN = 50  # of the kernel, between which a run reports its progress
+SHORTEST_CALL, LONGEST_CALL = 0.02, 0.5
+"""Bounds of the duration of a call of the kernel, in seconds."""
+PRESENT_SAMPLE = Sampling(0.0, 0, 0)
+"""A sample of the present instant."""
+FRAME_BYTES_PER_CALL = 2**21
+"""Bytes of frames that a call may copy: larger amounts do not fit in the cache."""
 
 
 def count(particles: int, per_particle: float) -> int:
-    """Return the collisions in a gas of so many particles; at least one."""
+    """Return the number of collisions in a gas that are `per_particle` per particle; at least one.
+
+    `particles` is N.
+    """
     return max(1, round(particles / 2 * per_particle))
 
 
-class Gas:
-    """A scene, the state that it has reached, and the recorder of what this has cost.
+class Costs(NamedTuple):
+    """CPU time, number of collisions, and number of altered contacts of a simulation."""
 
-    `sample` holds the columns of the last sample, arrays of length 1. A cooling gas is refreshed
-    after every `refresh_every` collisions (0: never). One that `keeps_books` has its energy balance
-    in every sample.
+    seconds: float = 0.0  # of CPU time in the kernel
+    collisions: int = 0
+    touched: int = 0  # contacts that the contact-time model made elastic
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, np.ndarray]) -> "Costs":
+        """Return the costs from their arrays by name, as in a checkpoint."""
+        return cls(*(arrays[name].item() for name in cls._fields))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Return the costs as arrays by name."""
+        return {name: np.array(cost) for name, cost in self._asdict().items()}
+
+    def plus(self, other: "Costs") -> "Costs":
+        """Return the sum of both costs."""
+        return Costs(
+            self.seconds + other.seconds,
+            self.collisions + other.collisions,
+            self.touched + other.touched,
+        )
+
+
+class Batch(NamedTuple):
+    """The samples of one call of the kernel, the frames copied in it, and its costs."""
+
+    rows: Columns  # name -> (samples,): see roughgas.kernel.record.columns
+    frames: RawFrames
+    costs: Costs
+    taken: int = 0  # samples of the leg before these
+
+    @property
+    def samples(self) -> int:
+        """Number of samples in the batch."""
+        return len(self.rows["time"])
+
+    @property
+    def sample_of_frames(self) -> np.ndarray:
+        """Number of the sample in its leg, from 1, for each frame, (k,)."""
+        return self.taken + 1 + self.frames.rows
+
+
+class Pace:
+    """Adapts the number of samples per call of the kernel to its duration; no result depends on it.
+
+    A call lasts at most about LONGEST_CALL, so that a run can be interrupted and reports progress.
+    A run makes about CALLS_PER_RUN calls, or fewer that last SHORTEST_CALL.
     """
 
-    def __init__(self, scene: Scene, state: State, recorder: Recorder | None = None) -> None:
+    def __init__(self) -> None:
+        self._lengths: dict[Sampling, int] = {}  # samples of a call
+        self._compiled: set[Scene] = set()
+
+    def compile(self, state: State, scene: Scene) -> None:
+        """Compile the kernel for a scene, or load it from the cache, before calls are timed."""
+        if scene not in self._compiled:
+            no_rows = np.empty((0, len(columns(scene))))
+            record(state, scene, PRESENT_SAMPLE, no_rows, allocate_frames(state, 0))
+            self._compiled.add(scene)
+
+    def samples_of_call(self, sampling: Sampling, state: State) -> int:
+        """Return the number of samples in the next call of the kernel with this sampling."""
+        length = self._lengths.get(sampling, max(1, sampling.refresh))
+        if not sampling.every:
+            return length
+        frame = sum(array.nbytes for array in allocate_frames(state, 1) if array is not None)
+        return min(length, sampling.every * max(1, FRAME_BYTES_PER_CALL // frame))
+
+    def adapt(self, sampling: Sampling, length: int, seconds: float, samples: int) -> None:
+        """Adapt the length of calls to a call of `length` samples that took `seconds` (s).
+
+        `samples` is the number of samples in the leg. The last call of a leg may have had fewer
+        than `length`.
+        """
+        longer = length < samples and (
+            seconds < SHORTEST_CALL or 2 * length * CALLS_PER_RUN <= samples
+        )
+        if seconds >= LONGEST_CALL:
+            length = max(1, length // 2)
+        self._lengths[sampling] = 2 * length if longer and seconds < LONGEST_CALL else length
+
+
+class Gas:
+    """A gas in a simulation: a scene, the kernel's state of its particles, and the costs.
+
+    `sample` holds the columns of the last sample, arrays of length 1. A cooling gas is refreshed
+    after every `refresh_every` collisions in the gas (0: never): its particles are advanced to one
+    instant, and its velocities rescaled. `number` is the index of a replica of a point.
+    """
+
+    def __init__(self, scene: Scene, state: State) -> None:
         self.scene, self.state = scene, state
-        self.recorder = Recorder() if recorder is None else recorder
-        self.observer: Observer | None = None  # looks at it between samples
+        self.costs, self.pace, self.number = Costs(), Pace(), 0
         self.sample: Columns = {}
-        self.refresh_every = self.begun = 0
-        self.keeps_books = False
-        self._just_restarted = False  # with its memory, just now
-        self._rows: list[Columns] | None = None  # of the present call
-        self._ahead = 0  # samples since the observer looked, of a call that goes on
+        self.refresh_every = self.collisions_before_cooling = 0
+        self._has_kernel_memory = False  # of an earlier run, which it continues
         self.extents = np.ptp(state.trajectory[:, : len(scene.box)], axis=0)
 
     @classmethod
     def start(
         cls,
         scene: Scene,
-        experiment: Mapping[str, Any],
+        experiment: SceneSettings,
         rng: np.random.Generator,
-        recorder: Recorder | None = None,
-        initial: Initial | None = None,
+        initial: InitialState | None = None,
     ) -> Self:
-        """Return a gas of the experiment's particles, in the `initial` state or else on a lattice.
+        """Return a gas of the experiment's particles, in the `initial` state or on a lattice.
 
-        Raises InputError.
+        `rng` draws the random numbers of the run. Raises InputError if the particles do not fit, or
+        for an invalid memory in the initial state.
         """
         if initial is None:
-            gas = cls(scene, initial_state(scene, experiment, rng), recorder)
-        else:
-            state, begun, extents = state_from(initial, scene, experiment, rng)
-            gas = cls(scene, state, recorder)
-            gas.extents = extents
-            if begun is not None:
-                gas.begun, gas._just_restarted = begun, True
-        gas.recorder.begin(gas)
+            return cls(scene, initial_state(scene, experiment, rng))
+        state, begun, extents = state_from(initial, scene, experiment, rng)
+        gas = cls(scene, state)
+        gas.extents = extents
+        if begun is not None:
+            gas.collisions_before_cooling, gas._has_kernel_memory = begun, True
         return gas
 
     @property
     def particles(self) -> int:
-        """Number of particles."""
+        """Number of particles, N."""
         return len(self.state.changes)
 
     @property
     def time(self) -> float:
-        """T since the start."""
-        return now(self.state)
+        """Time since the start, in T."""
+        return time_of(self.state)
 
     @property
     def collisions(self) -> int:
-        """Collisions since the start, or since `cool` was called."""
-        return int(self.state.counts[COLLISIONS]) - self.begun
+        """Number of collisions in the gas since the start, or since `cool` was called."""
+        return int(self.state.counts[COLLISIONS]) - self.collisions_before_cooling
 
     def count(self, per_particle: float) -> int:
-        """Return the collisions in the whole gas, each with two partners; at least one."""
+        """Return the collisions in the gas that are `per_particle` per particle; at least one."""
         return count(self.particles, per_particle)
 
+    def batches(self, sampling: Sampling, samples: int, timed: bool = False) -> Iterator[Batch]:
+        """Advance the gas by a number of `samples`, and yield the batch of each call of the kernel.
+
+        `sampling.taken` is the number of earlier samples of the leg. Raises CollapseError if
+        contacts accumulate without end, SilentError if particles no longer collide in a sample that
+        lasts a number of collisions, JammedError if particles mostly hit walls, or if samples are
+        `timed` and any of them has `sampling.collisions` or more.
+        """
+        self.pace.compile(self.state, self.scene)
+        key = sampling._replace(taken=0)
+        end = sampling.taken + samples
+        while sampling.taken < end:
+            length, begin = self.pace.samples_of_call(key, self.state), time.perf_counter()
+            batch = self._call(sampling, min(length, end - sampling.taken), timed)
+            if samples > 1:
+                self.pace.adapt(key, length, time.perf_counter() - begin, samples)
+            sampling = sampling._replace(taken=sampling.taken + batch.samples)
+            yield batch
+
+    def _call(self, sampling: Sampling, samples: int, timed: bool) -> Batch:
+        """Call the kernel once, to take a number of `samples`, and return their batch.
+
+        Raises the errors of `batches`.
+        """
+        state, scene = self.state, self.scene
+        names, before = columns(scene), state.counts.copy()
+        rows = np.empty((samples, len(names)))
+        until = sampling.frames_until
+        frames = allocate_frames(state, until(sampling.taken + samples) - until(sampling.taken))
+        hits_allowed = hit_limit(samples, sampling.interval, self.particles)
+        begin = time.process_time()
+        ended, _ = record(state, scene, sampling._replace(hits=hits_allowed), rows, frames)
+        seconds = time.process_time() - begin
+        collisions, touched = (
+            int(state.counts[k] - before[k]) for k in (COLLISIONS, ALTERED_RESTITUTIONS)
+        )
+        costs = Costs(seconds, collisions, touched)
+        self.costs = self.costs.plus(costs)
+        if ended != REACHED:
+            raise early_end_error(ended, state, scene)
+        if timed and collisions >= sampling.collisions:  # the sum over samples: test each
+            if np.diff(rows[:, 1], prepend=before[COLLISIONS]).max() >= sampling.collisions:
+                raise jam_error(state, sampling.interval)
+        batch = Batch(dict(zip(names, rows.T, strict=True)), frames, costs)
+        if samples:
+            self.sample = {name: column[-1:] for name, column in batch.rows.items()}
+        return batch
+
+    def _columns_of(self, sampling: Sampling, samples: int, timed: bool = False) -> Columns:
+        """Advance the gas by a number of `samples`, and return them as columns (samples,).
+
+        `timed` and errors as in `batches`.
+        """
+        if samples == 0:
+            self.pace.compile(self.state, self.scene)
+            return {name: np.empty(0) for name in columns(self.scene)}
+        return concatenated([batch.rows for batch in self.batches(sampling, samples, timed)])
+
     def thermalise(self, per_particle: float) -> None:
-        """Let particles, and side walls, collide as smooth elastic ones, so often per particle."""
-        sampling = Sampling(np.inf, math.ceil(self.particles / 2 * per_particle), 0)
-        self._call(1, lambda n: self._run(sampling, n, elastic(self.scene)))
+        """Advance the gas by `per_particle` collisions per particle, meanwhile smooth and elastic.
+
+        Side walls are smooth and elastic, too.
+        """
+        scene, self.scene = self.scene, elastic(self.scene)
+        try:
+            self._columns_of(thermalisation_sampling(self.particles, per_particle), 1)
+        finally:
+            self.scene = scene
 
     def cool(self, refresh_every: int) -> None:
-        """Count collisions anew, unless a run goes on, and refresh the gas after each
-        `refresh_every` of them."""
+        """Start to cool: refresh the gas after every `refresh_every` collisions in the gas.
+
+        `collisions` counts from here, unless the gas continues an earlier run.
+        """
         self.refresh_every = refresh_every
-        if not self._just_restarted:
-            self.begun = int(self.state.counts[COLLISIONS])
+        if not self._has_kernel_memory:
+            self.collisions_before_cooling = int(self.state.counts[COLLISIONS])
 
     def in_time(self, interval: float, samples: int) -> Columns:
-        """Return columns (name -> array of length `samples`), sampled every `interval` T."""
-        sampling = Sampling(float(interval), most_in(interval, self.particles), 0)
-        return self._observed(lambda n: self._run(sampling, n, timed=True), samples, lambda: 0, 1)
+        """Advance the gas and return its samples, `interval` T apart, as columns (samples,).
+
+        `samples` is their number. Raises the errors of `batches`.
+        """
+        return self._columns_of(timed_sampling(interval, self.particles), samples, timed=True)
 
     def in_collisions(self, collisions: int, samples: int) -> Columns:
-        """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
+        """Advance the gas and return its samples, a number of `collisions` apart, as columns.
 
-        Refreshing is counted from the start of the call; in the first call after a run went on,
-        from where it was counted before. It changes the unit of velocity, to 2^exponent a/T: see
-        roughgas.simulation.energies.restored.
+        `collisions` in the gas must divide `refresh_every`; `samples` is the number of samples. The
+        collisions to the next refresh count from the start of the call or, in the first call of a
+        continued run, from the last refresh of the earlier run. A refresh changes the unit of
+        velocity to 2^exponent a/T: see roughgas.simulation.energies.restored.
         """
-        unit = max(1, self.refresh_every // collisions)
-        rows = self._observed(
-            lambda n: self._in_collisions(collisions, n),
-            samples,
-            lambda: unit - self._since_refresh(collisions) // collisions,
-            unit,
+        sampling = self.cooling_sampling(collisions)
+        self._has_kernel_memory = False
+        return self._columns_of(sampling, samples)
+
+    def cooling_sampling(self, collisions: int) -> Sampling:
+        """Return the sampling of a cooling gas, one sample after every `collisions` in the gas.
+
+        A gas that continues an earlier run counts to its next refresh from the last one.
+        """
+        continues_refreshes = self._has_kernel_memory and self.refresh_every >= collisions
+        collisions_since_refresh = (
+            self.collisions % self.refresh_every if continues_refreshes else 0
         )
-        self._just_restarted = False
-        return rows
+        samples_since_refresh = (
+            0 if collisions_since_refresh % collisions else collisions_since_refresh // collisions
+        )
+        return Sampling(
+            np.inf, collisions, self.refresh_every // collisions, taken=samples_since_refresh
+        )
 
-    def _in_collisions(self, collisions: int, samples: int) -> None:
-        refresh, late = self.refresh_every // collisions, self._since_refresh(collisions)
-        self._just_restarted = False
-        left = (self.refresh_every - late) // collisions
-        if not late or samples < left:
-            self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
-            return
-        self._run(Sampling(np.inf, collisions, left), left)
-        if samples > left:
-            self._run(Sampling(np.inf, collisions, refresh), samples - left)
-
-    def _since_refresh(self, collisions: int) -> int:
-        """Return the collisions since the last refresh, in the first call after a run went on."""
-        refreshed = self._just_restarted and self.refresh_every >= collisions
-        late = self.collisions % self.refresh_every if refreshed else 0
-        return 0 if late % collisions else late
-
-    def _observed(
-        self,
-        advance: Callable[[int], None],
-        samples: int,
-        first: Callable[[], int],
-        unit: int,
-    ) -> Columns:
-        """Return samples, taken in pieces where an observer looks in between."""
-        observer = self.observer
-        if observer is None:
-            return self._call(samples, advance)
-
-        def in_pieces(left: int) -> None:
-            ahead = self._ahead
-            for length in observer.lengths(left + ahead, first(), unit):
-                if length > ahead:
-                    advance(length - ahead)
-                ahead = 0
-                self._seen += length
-                observer.look(self, length)
-
-        return self._call(samples, in_pieces)
-
-    def _call(self, samples: int, advance: Callable[[int], None]) -> Columns:
-        """Return so many samples, which `advance` takes or a journal of the run has."""
-        journal = self.recorder.journal
-        known = journal.recall(self) if journal else None
-        self._rows, self._seen, self._ahead = [], 0, 0
-        if known:
-            self._rows, self.sample = [known.rows], _last(known.rows)
-            self._seen, self._ahead = _length(known.rows) - known.ahead, known.ahead
-        if not (known and known.finished):
-            self._just_restarted |= known is not None
-            advance(samples - sum(map(_length, self._rows)))
-        rows, self._rows = joined(self._rows), None
-        if journal and not (known and known.finished):
-            journal.finish(self, rows)
-        return rows
-
-    def look(self) -> None:
-        """Take a sample of the present instant."""
-        if self._rows is None:
-            self._call(1, lambda n: self._run(Sampling(0.0, 0, 0), n))
-        else:  # for an observer, within a call
-            self.sample = self.recorder.run(self.state, self.scene, Sampling(0.0, 0, 0), 1)
+    def sample_now(self) -> None:
+        """Take a sample of the present instant, and store it in `sample`."""
+        self._columns_of(PRESENT_SAMPLE, 1)
 
     def refresh(self) -> None:
-        """Take a sample, then bring all particles to the present instant, without momentum."""
-        self._call(1, lambda n: self._run(Sampling(np.inf, 0, 1), n))
+        """Take a sample, then bring all particles to the present instant, without momentum.
+
+        Their total momentum is removed.
+        """
+        self._columns_of(Sampling(np.inf, 0, 1), 1)
 
     def step(self, until: float, collisions: int) -> bool:
-        """Advance to an instant (T) or by so many collisions, whichever comes first.
+        """Advance to the instant `until` (T) or by `collisions` in the gas, whichever comes first.
 
-        A step ends where a cooling gas is refreshed. Returns whether collisions ended it.
+        A step also ends at the refresh of a cooling gas. Returns whether it ended by collisions.
         """
-        begun, every = self.collisions, self.refresh_every
-        most = min(collisions, every - begun % every) if every else collisions
+        initial_collisions, sampling = self.collisions, self.step_sampling(until, collisions)
+        self._columns_of(sampling, 1)
+        return self.collisions - initial_collisions == sampling.collisions
+
+    def step_sampling(self, until: float, collisions: int) -> Sampling:
+        """Return the sampling of one sample, at `until` (T) or after `collisions` if earlier.
+
+        If a refresh of the gas is due earlier, the sample is taken there, and the refresh follows.
+        """
+        collisions_so_far, refresh_every = self.collisions, self.refresh_every
+        limit = (
+            min(collisions, refresh_every - collisions_so_far % refresh_every)
+            if refresh_every
+            else collisions
+        )
+        refreshes = bool(refresh_every) and (collisions_so_far + limit) % refresh_every == 0
         interval = (until - self.time) * 2.0 ** int(self.state.counts[EXPONENT])
-        self._call(1, lambda n: self._run(Sampling(interval, most, 0), n))
-        made = self.collisions - begun
-        if every and made and self.collisions % every == 0:
-            self.refresh()
-        return made == most
+        return Sampling(interval, limit, int(refreshes))
 
     def energies(self, columns: Columns) -> Energies:
-        """Return the energies of samples, of a sheared gas without mean flow and mean spin.
+        """Return the energies per degree of freedom of samples of this gas, (samples,).
 
-        A gas between walls that move along themselves is one, too.
+        `columns` are the samples. Velocities are in the unit of the columns, 2^exponent a/T. In a
+        sheared gas, and between walls that move along themselves, the mean flow and the mean spin
+        are subtracted.
         """
         return energies_of(columns, self.scene, self.state)
 
     def positions_and_velocities(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions in a, folded into the box, and velocities of the present: copies.
+        """Return copies of the present positions in a, folded into the box, and velocities.
 
-        Shape (N, D) each. Velocities are in 2^exponent a/T, as those of the sample are. The order
-        is that of `spins`; a run of many particles changes it now and then.
+        Both are (N, D). Velocities are in 2^exponent a/T, as in the sample. The order equals the
+        order of `spins`; with many particles it changes during a run.
         """
         return positions_and_velocities(self.state, self.scene, self.time)
 
     def spins(self) -> np.ndarray:
-        """Return a copy of the spins, in 2^exponent/T: (N, 1) of disks, (N, 3) of spheres.
+        """Return a copy of the spins, surface velocities in 2^exponent a/T.
 
-        Raises NeedsError where particles do not spin.
+        Shape (N, 1) for disks, (N, 3) for spheres. Raises NeedsError if particles do not spin.
         """
         if self.state.spin is None:
             raise NeedsError("spins", "effects.spin")
         return self.state.spin.copy()
 
     def contact_sums(self) -> np.ndarray:
-        """Return the sums of v_t^2, v_r^2 and v_t.v_r over all contacts up to the last sample.
+        """Return the sums of v_t^2, v_r^2 and v_t.v_r over all contacts since the start, (3,).
 
         v_t and v_r are the tangential velocity of the contact due to translation and to spin, in
-        a/T. Raises NeedsError without the effect contact_averages.
+        a/T. The sums end at the last sample. Raises NeedsError without the effect contact_averages,
+        or before any sample.
         """
-        if not set(SUMS) <= set(self.sample):
+        if not set(CONTACT_SUMS) <= set(self.sample):
             raise NeedsError("contact sums", "effects.contact_averages, and a sample")
-        return np.array([self.sample[name][0] for name in SUMS])
+        return np.array([self.sample[name][0] for name in CONTACT_SUMS])
 
     def last_contact(self) -> tuple[int, int, np.ndarray]:
-        """Return the partners i < j of the last contact, and where they are now: (2, D), in a.
+        """Return the partners i < j of the last contact, and their present positions (2, D) in a.
 
-        i and j count in the order of `spins`. Right after a `step` of one collision, that is where
-        they touch, not folded into the box.
+        i and j count in the order of `spins`. Right after a `step` of one collision the partners
+        touch; the positions are not folded into the box.
         """
         numbers = self.state.counts[[LAST_FIRST, LAST_SECOND]]
         i, j = np.flatnonzero(np.isin(self.state.label, numbers))
         return int(i), int(j), self.state.trajectory[[i, j], : len(self.scene.box)]
 
     def save(self, path: str | Path, owner: str, record: Mapping[str, np.ndarray]) -> None:
-        """Write the gas, what it has cost, and arrays of a run's own, `record`, to `path`.
+        """Write the gas, its costs, and the caller's arrays `record` to `path` atomically.
 
-        `owner` says which run this is: only the same one may `restore` it. The file is there whole
-        or not at all. Raises OSError.
+        The record has arrays by name. `owner` identifies the run: no other one may `restore` the
+        file. Raises OSError.
         """
-        costs = {f"costs.{name}": np.array(getattr(self.recorder, name)) for name in COSTS}
-        restart.save(path, owner, self.state, {**record, **costs})
+        costs = checkpoint.with_prefix("costs", self.costs.arrays())
+        checkpoint.save(path, owner, self.state, {**record, **costs})
 
     def restore(self, path: str | Path, owner: str) -> dict[str, np.ndarray]:
-        """Bring a gas that has just started to where it was saved, and return the record.
+        """Restore a gas that has just started to its saved state, and return the record.
 
-        Call `cool` again where it cools. Raises FileNotFoundError if there is no such file, and
-        UnusableCheckpoint if it is damaged or of another run; the gas is then as it was.
+        The file at `path` was made by `save`. `owner` is the text given to `save`. If it cools,
+        call `cool` again. Raises FileNotFoundError if the file is missing, and UnusableCheckpoint
+        if it is damaged or forged, or belongs to another run or to another version of the format;
+        the gas is then unchanged.
         """
-        record = restart.restore(path, owner, self.state)
-        for name in COSTS:
-            setattr(self.recorder, name, record.pop(f"costs.{name}").item())
+        record = checkpoint.restore(path, owner, self.state, self.scene)
+        self.costs = Costs.of(checkpoint.under_prefix("costs", record))
+        for name in Costs._fields:
+            del record[f"costs.{name}"]
         return record
 
     def balance(self) -> EnergyBalance:
-        """Return the energy balance now."""
+        """Return the energy balance at the present instant, in m a^2/T^2."""
         return balance(self.state, self.scene)
 
-    def _run(
-        self, sampling: Sampling, samples: int, scene: Scene | None = None, timed: bool = False
-    ) -> None:
-        """Advance, within a call, and add samples to those of the call."""
-        assert self._rows is not None
-        if samples == 0 and self._rows:  # of a call that was stopped at its end
-            return
-        for piece in [1] * samples if self.keeps_books else [samples]:
-            columns = self.recorder.run(
-                self.state, scene or self.scene, sampling, piece, timed, self._keep
-            )
-            columns = self._with_books(columns)
-            self.sample = _last(columns)
-            self._rows.append(columns)
 
-    def _with_books(self, columns: Columns) -> Columns:
-        """Return a sample of the present instant with the energy balance, where that is kept."""
-        return {**columns, **as_columns(self.balance())} if self.keeps_books else columns
+def timed_sampling(interval: float, particles: int) -> Sampling:
+    """Return the sampling of a gas at intervals of `interval` T.
 
-    def _keep(self, columns: Columns) -> None:
-        """Write into the journal how far the present call is, with these samples."""
-        assert self._rows is not None and self.recorder.journal is not None
-        rows = joined([*self._rows, self._with_books(columns)])
-        self.recorder.journal.write(self, rows, _length(rows) - self._seen)
+    `particles` is N. A sample with `jam_limit` collisions or more ends early: the gas is jammed.
+    """
+    return Sampling(float(interval), jam_limit(interval, particles), 0)
 
 
-def _length(rows: Columns) -> int:
-    return len(rows["time"])
+def thermalisation_sampling(particles: int, per_particle: float) -> Sampling:
+    """Return the sampling of one sample after `per_particle` collisions per particle.
+
+    `particles` is N.
+    """
+    return Sampling(np.inf, math.ceil(particles / 2 * per_particle), 0)
 
 
-def _last(rows: Columns) -> Columns:
-    return {name: column[-1:] for name, column in rows.items()}
-
-
-def joined(parts: Sequence[Columns]) -> Columns:
-    """Return the samples of several pieces as those of one."""
-    if len(parts) == 1:
-        return parts[0]
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+def concatenated(stretches: Sequence[Columns]) -> Columns:
+    """Return several consecutive stretches of samples as one, columns by name."""
+    if len(stretches) == 1:
+        return stretches[0]
+    names = stretches[0]
+    return {name: np.concatenate([rows[name] for rows in stretches]) for name in names}

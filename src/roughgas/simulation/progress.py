@@ -1,7 +1,7 @@
-"""How far long work is, and how much longer it will take.
+"""Progress of long work, with an estimate of the remaining time.
 
-There is a bar of tqdm on a terminal and in a notebook; elsewhere, as in a pipe or a log, a line a
-minute of what takes longer than PATIENCE. There tqdm is not imported, which would take 0.07 s.
+It is a bar of tqdm on a terminal and in a notebook; elsewhere, as in a pipe or a log, a line a
+minute for work longer than FIRST_LINE_AFTER, without importing tqdm, which takes 0.07 s.
 """
 
 import math
@@ -12,18 +12,25 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
+import numpy as np
+
+from roughgas.simulation.tracker import Tracker
+
 if TYPE_CHECKING:
     from roughgas.scene import Scene
+    from roughgas.simulation.experiment import Experiment
+    from roughgas.simulation.gas import Batch, Gas
+    from roughgas.simulation.leg import Changes, Leg
 
-BAR = "{desc}: {percentage:3.0f}%|{bar}| {unit}, {remaining} left{postfix}"  # unit: see `_told`
-SECONDS_BETWEEN = 0.1  # looks of a bar
-PATIENCE, SILENCE = 10.0, 60.0  # seconds until the first line, and between lines
-NOTEBOOK = "ipykernel"  # a notebook has imported it
+BAR_FORMAT = "{desc}: {percentage:3.0f}%|{bar}| {unit}, {remaining} left{postfix}"
+BAR_INTERVAL = 0.1  # seconds between updates of a bar
+FIRST_LINE_AFTER, LINE_INTERVAL = 10.0, 60.0  # seconds until the first line, and between lines
+NOTEBOOK = "ipykernel"  # module that is imported in notebooks
 Item = TypeVar("Item")
 
 
-class Bar:
-    """How much of a known amount of work is done."""
+class ProgressBar:
+    """Shows the progress of work with a known total, as a bar or as lines."""
 
     def __init__(
         self,
@@ -33,22 +40,26 @@ class Bar:
         stream: Any = None,
         quiet: bool = False,
     ) -> None:
-        """`unit` is that of `total`, which is None where it is not known yet."""
+        """Begin the display of work that is called `name`; `quiet` shows nothing.
+
+        `total` is the amount of work, in the `unit` that the display names, and None if it is not
+        known yet. `stream` is the text stream to write to, by default stderr.
+        """
         self._stream = sys.stderr if stream is None else stream
         self._name, self._total, self._unit = name, total, f" {unit}" if unit else ""
         self._done = 0.0
         self._begun = time.monotonic()
-        self._next = math.inf if quiet else self._begun + PATIENCE
+        self._next = math.inf if quiet else self._begun + FIRST_LINE_AFTER
         self._bar: Any = None
         if not quiet and (NOTEBOOK in sys.modules or self._stream.isatty()):
-            self._bar = _tqdm()(
+            self._bar = _suitable_tqdm()(
                 desc=name,
                 total=total,
-                unit=self._told(),
-                bar_format=BAR,
+                unit=self._progress_text(),
+                bar_format=BAR_FORMAT,
                 file=self._stream,
                 leave=False,
-                mininterval=SECONDS_BETWEEN,
+                mininterval=BAR_INTERVAL,
                 miniters=0,  # looks at the clock at every call
                 dynamic_ncols=True,
             )
@@ -57,12 +68,12 @@ class Bar:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Clear the line."""
+        """Remove the bar from the terminal."""
         if self._bar is not None:
             self._bar.close()
 
     def say(self, text: str) -> None:
-        """Print a line above the bar."""
+        """Print a line of text above the bar."""
         if self._bar is not None:
             self._bar.write(text, file=self._stream)
         else:
@@ -75,93 +86,130 @@ class Bar:
         total: float | None = None,
         share: float | None = None,
     ) -> None:
-        """Show how much is done; `total` where it has become known, and the `share` of the work,
-        where that is not done / total, as of parts that take unequal times. Work that exceeds its
-        total is shown as all of it: the total was an estimate."""
+        """Show that the amount `done` of the `total` is finished, with a `note` in words.
+
+        `total` replaces an earlier one. `share` is the finished share of the time, by default done
+        / total; it differs if parts of the work take unequal times. The total may be an estimate:
+        work beyond it is shown as 100 %.
+        """
         self._total = self._total if total is None else total
-        known = self._total or 0.0
-        self._done = done = min(done, known) if known else done
+        known_total = self._total or 0.0
+        self._done = done = min(done, known_total) if known_total else done
         if share is None:
-            share = done / known if known else 0.0
+            share = done / known_total if known_total else 0.0
         share = min(share, 1.0)
         if self._bar is not None:
-            self._bar.total, self._bar.unit = self._total, self._told()
+            self._bar.total, self._bar.unit = self._total, self._progress_text()
             self._bar.set_postfix_str(note, refresh=False)
-            self._bar.update((share * known or done) - self._bar.n)
+            self._bar.update((share * known_total or done) - self._bar.n)
         elif (now := time.monotonic()) > self._next:
-            self._next = now + SILENCE
-            told, elapsed = f"{self._told()}{note and f' ({note})'}", now - self._begun
+            self._next = now + LINE_INTERVAL
+            progress_text, elapsed = (
+                f"{self._progress_text()}{note and f' ({note})'}",
+                now - self._begun,
+            )
             left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if share else ""
             percentage = f"{100 * share:.0f} %, " if share else ""
-            self._print(f"{self._name}: {percentage}{told}, {elapsed:.0f} s so far{left}")
+            self._print(f"{self._name}: {percentage}{progress_text}, {elapsed:.0f} s so far{left}")
 
-    def _told(self) -> str:
+    def _progress_text(self) -> str:
+        """Return the finished amount of the total, with its unit, as text."""
         total = "?" if self._total is None else f"{self._total:.0f}"
         return f"{self._done:.0f} of {total}{self._unit}"
 
     def _print(self, text: str) -> None:
-        with suppress(OSError, ValueError):  # nobody reads, or the stream is closed
-            print(text, file=self._stream, flush=True)
+        """Print a line of text without a bar."""
+        print_line(text, self._stream)
 
 
-class Progress(Bar):
-    """How far the simulation of one point is, all replicas together.
+class RunProgress(ProgressBar, Tracker):
+    """Shows the progress of the simulation of a point, summed over replicas.
 
-    In T, or in collisions per particle if the gas cools.
+    `name` is the title of the display; `stream` and `quiet` as in ProgressBar. The unit is T, or
+    collisions per particle if the gas cools.
     """
 
     def __init__(
         self,
         name: str,
         scene: "Scene",
-        experiment: Mapping[str, Any],
+        experiment: "Experiment",
         stream: Any = None,
         quiet: bool = False,
     ) -> None:
-        from roughgas.simulation import schedule
+        from roughgas.simulation import protocols
 
         self._running, self._before, self._now = False, 0.0, 0.0
-        self._particles, self._kind = experiment["particles"], schedule.of(experiment)
+        self._start = 0.0, 0  # time and collisions of the present gas as it starts
+        self._gas = -1  # number of the present gas
+        self._particles, self._kind = experiment.particles, protocols.protocol_of(experiment)
         total = round(self._kind.length(scene, experiment))
         super().__init__(f"{name} (placing particles)", total, self._kind.UNIT, stream, quiet)
         self._name = name
 
-    def stage(self, doing: str) -> None:
-        """Say what is done before the first simulation."""
-        if self._bar is not None and not self._running:
-            self._bar.set_description_str(f"{self._name} ({doing})")
-
     def expect(self, length: float) -> None:
-        """Say that there will be more than the schedule says, or less."""
+        """Replace the total length of the schedule, in T or collisions per particle."""
         self.reach(self._done, total=round(length))
 
-    def __call__(self, simulated: float, collisions: int) -> None:
-        """Report simulated time (T) and collisions of the present simulation so far."""
+    def begin(self, gas: "Gas", leg: "Leg", changes: "Changes") -> None:
+        """Show that the kernel is compiled; count the time of a new gas from its start."""
         if self._bar is not None and not self._running:
-            self._bar.set_description_str(self._name, refresh=collisions == 0)
-            self._bar.unpause()  # how long compiling took says nothing of the simulation
-        self._running = True
-        now = simulated if self._kind.DRIVEN else 2.0 * collisions / self._particles
-        if now < self._now:  # another one has begun
+            self._bar.set_description_str(f"{self._name} (compiling)")
+        if gas.number != self._gas:
+            self._gas, self._start = (
+                gas.number,
+                (gas.time, gas.collisions_before_cooling + gas.collisions),
+            )
             self._before += self._now
-        self._now = now
-        self.reach(round(self._before + now))
+            self._now = 0.0
+
+    def take(self, gas: "Gas", leg: "Leg", batch: "Batch") -> None:
+        """Show the progress of the run after a batch of samples."""
+        if self._bar is not None and not self._running:
+            self._bar.set_description_str(self._name, refresh=False)
+            self._bar.unpause()  # the time of compiling does not count in estimates
+        self._running = True
+        time, collisions = self._start
+        if self._kind.DRIVEN:
+            self._now = float(batch.rows["time"][-1]) - time
+        else:
+            collisions_made = int(batch.rows["collisions"][-1]) - collisions
+            self._now = 2.0 * collisions_made / self._particles
+        self.reach(round(self._before + self._now))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Return the progress of the run as arrays by name, for a checkpoint."""
+        return {"run": np.array([self._before, self._now, *self._start, self._gas], float)}
+
+    def restore(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Restore the progress of the run from its arrays in a checkpoint."""
+        self._before, self._now, time, collisions, number = arrays["run"].tolist()
+        self._start, self._gas = (time, int(collisions)), int(number)
 
 
-def watched(
+def print_line(text: str, stream: Any = None) -> None:
+    """Print a line to a stream, by default stderr; ignore a closed stream or pipe."""
+    with suppress(OSError, ValueError):  # the pipe has no reader, or the stream is closed
+        print(text, file=sys.stderr if stream is None else stream, flush=True)
+
+
+def with_progress_bar(
     name: str, total: int, unit: str, items: Iterable[Item], quiet: bool = False
 ) -> Iterator[Item]:
-    """Yield the same items, and show a bar of how many there have been."""
-    with Bar(name, total, unit, quiet=quiet) as bar:
+    """Yield the items, and show their number as progress towards `total`.
+
+    `name` is the title of the display, and `unit` the name of an item in it.
+    """
+    with ProgressBar(name, total, unit, quiet=quiet) as bar:
         for done, item in enumerate(items, 1):
             yield item
             bar.reach(done)
 
 
-def _tqdm() -> Any:
-    """Return the bar that suits a notebook or a terminal, whose import is quicker.
+def _suitable_tqdm() -> Any:
+    """Return tqdm's class for a notebook, or for a terminal, which is imported faster.
 
-    Without widgets a notebook has a bar of characters, of which tqdm would warn.
+    Without widgets a notebook shows a bar of characters; the warning of tqdm is suppressed.
     """
     if NOTEBOOK not in sys.modules:
         from tqdm import tqdm

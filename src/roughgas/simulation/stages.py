@@ -1,211 +1,457 @@
-"""A gas through stages: settings change, or temperatures are set, where one begins.
+"""The staged protocol: settings of a gas change, or temperatures are set, at the start of stages.
 
-What a stage changes stays as it is until another one changes it again. Times are in T. The series
-run through all stages, and have what a change has put in beside what effects have; the averages of
-a point are over the stages that are measured.
+Functions take the scene at the r and beta of a point, and the settings of its experiment.
+
+A change persists until a later stage changes the same setting again. Times are in T. The series run
+through all stages, and contain the energy supplied by changes and by effects; averages are over the
+measured stages. Errors need samples at equal intervals: with other samples the averages are means
+over time without errors.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError, merged
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NamedValues
+from roughgas.base.fields import described, number, numbers, reference
+from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import Scene, build
 from roughgas.simulation import steady
-from roughgas.simulation.change import Temperatures, change, check_change, going_on
 from roughgas.simulation.energies import (
-    Columns,
     Energies,
     contact_averages,
-    driven_species,
-    energies_of_each,
-    energy_exchange,
-    exchange_series,
-    verdicts_on_means,
+    driven_species_averages,
+    energies_of,
+    ratio,
+    species_energies,
+    trust_of_means,
 )
-from roughgas.simulation.gas import Gas, joined
-from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.restart import Initial
+from roughgas.simulation.energy_balance import energy_exchange, exchange_series
+from roughgas.simulation.experiment import Experiment, ScheduleSettings
+from roughgas.simulation.gas import PRESENT_SAMPLE, Gas, concatenated, timed_sampling
+from roughgas.simulation.initial_states import InitialState
+from roughgas.simulation.leg import Changes, Leg
+from roughgas.simulation.point_trackers import SamplesWithBalance
+from roughgas.simulation.scene_switch import (
+    TargetTemperatures,
+    check_scene_switch,
+    switch_scene,
+    with_images_continued,
+)
+from roughgas.simulation.simulation import Simulation
+from roughgas.simulation.stage_sampling import (
+    LENGTH_ROUNDING,
+    StageInstants,
+    StageSamplingSettings,
+    common_spacing,
+)
+from roughgas.simulation.wall_types import with_common_wall_types
 from roughgas.statistics.errors import UNKNOWN
 
-# see roughgas.simulation.schedule.Kind
+Temperature = Annotated[
+    float,
+    number(
+        "(0, 1e+08]",
+        "Temperature of translation, 2 E_trans, that velocities are scaled to when it begins, in "
+        "m a^2/T^2.",
+    ),
+]
+SpinTemperature = Annotated[
+    float,
+    number(
+        "[0, 1e+08]",
+        "Temperature of rotation, 2 E_rot, that spins are scaled to; 0 stops all spins. Where no "
+        "particle spins, spins are drawn from a Maxwellian.",
+    ),
+]
+
+
+class StageSettings(StageSamplingSettings, frozen=True, kw_only=True):
+    """A stage; its changes persist until a later stage changes the same settings again."""
+
+    measure: Annotated[
+        bool,
+        described(
+            "Whether R and the energies are averaged over it, too; true by default. Stages that "
+            "are not measured come first. Series run through all stages."
+        ),
+    ] = True
+    effects: Annotated[
+        Mapping[str, Mapping[str, Any] | None],
+        reference("effects", "New values of parameters of effects that the experiment has."),
+    ] = {}
+    r: (
+        Annotated[float, number(RESTITUTION.text, "New normal restitution of the particles.")]
+        | None
+    ) = None
+    beta: Annotated[float, number(ROUGHNESS.text, "New roughness of the particles.")] | None = None
+    temperature: Temperature | None = None
+    spin_temperature: SpinTemperature | None = None
+
+    @property
+    def changes_scene(self) -> bool:
+        """Whether the stage changes effects, r or beta."""
+        return bool(self.effects) or self.r is not None or self.beta is not None
+
+
+class StagesSettings(ScheduleSettings, frozen=True, kw_only=True, tag="stages"):
+    """A gas whose settings change from stage to stage."""
+
+    stages: Annotated[
+        tuple[StageSettings, ...],
+        numbers(1, 1000, "The stages that the gas goes through, one after the other."),
+    ]
+
+
+# see roughgas.simulation.protocols.RunProtocol
+SETTINGS: type[ScheduleSettings] = StagesSettings
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "stages", 1
-interval, sample = steady.interval, steady.sample
+sample = steady.sample
+SPIN_SEED = 0x5B15
+"""First seed of the generators of spins, which distinguishes them from all others of a run."""
+UNEVEN_SAMPLING_LACK = "samples at equal intervals are needed"
+"""Comment on R_ci95_trusted if intervals differ."""
 
 
 class Stage(NamedTuple):
-    """What a gas goes through from `begin` on (T)."""
+    """A stage of a run: its beginning `begin` (T), scene, sampling, and temperatures to be set.
 
+    `measured` is whether averages include it.
+    """
+
+    rank: int  # from 0
     begin: float
-    duration: float
+    instants: StageInstants
     scene: Scene
-    temperatures: Temperatures
+    temperatures: TargetTemperatures
     measured: bool
 
+    @property
+    def duration(self) -> float:
+        """Duration of the stage, in T."""
+        return self.instants.duration
 
-def course(scene: Scene, experiment: Mapping[str, Any], begun: float = 0.0) -> list[Stage]:
-    """Return the stages of an experiment whose first one begins at `begun` (T).
+    def enter(self, gas: Gas, seed: Any) -> np.ndarray:
+        """Switch a gas to the scene of this stage, at its beginning; return the supplied energy.
 
-    `scene` has the r and beta that the gas has where no stage gives others. Raises InputError for a
-    stage that names an effect that is not there, or changes more than numbers.
+        The energy is (2,) of translation and rotation, in m a^2/T^2 (see
+        roughgas.simulation.scene_switch). Random numbers depend on `seed`, of the point, and the
+        stage's rank.
+        """
+        rng = np.random.default_rng([SPIN_SEED, self.rank, seed])
+        return switch_scene(gas, self.scene, self.begin, self.temperatures, rng)
+
+
+def course(scene: Scene, experiment: Experiment[StagesSettings], begun: float = 0.0) -> list[Stage]:
+    """Return the stages of an experiment in order; the first one begins at the time `begun` (T).
+
+    `scene` has the r and beta of stages that do not set others. Raises InputError for a stage that
+    names an absent effect, or changes more than numbers.
     """
-    found: list[Stage] = []
-    time, settings = begun, {**experiment, "r": scene.restitution, "beta": scene.roughness}
-    present = scene
-    for number, one in enumerate(experiment["schedule"]["stages"]):
-        key = f"schedule.stages[{number}]"
-        for name in one.get("effects", {}):
-            if name not in settings["effects"]:
-                known = ", ".join(sorted(settings["effects"]))
-                raise InputError(f"{key}.effects: key", name, f"be one of this experiment: {known}")
-        changes = {name: one[name] for name in ("effects", "r", "beta") if name in one}
-        settings = merged(settings, changes)
-        temperatures = Temperatures(one.get("temperature"), one.get("spin_temperature"))
-        new = going_on(present, _built(settings, key) if changes else present, time)
-        check_change(present, new, time, temperatures, key)
-        found.append(Stage(time, one["duration"], new, temperatures, one.get("measure", True)))
-        present, time = new, time + one["duration"]
-    return found
+    stages: list[Stage] = []
+    schedule, time = experiment.schedule, begun
+    scene_before, *stage_scenes = scenes(scene, experiment)
+    for rank, (settings, scene) in enumerate(zip(schedule.stages, stage_scenes, strict=True)):
+        new = (
+            with_images_continued(scene_before, scene, time)
+            if settings.changes_scene
+            else scene_before
+        )
+        temperatures = TargetTemperatures(settings.temperature, settings.spin_temperature)
+        check_scene_switch(scene_before, new, time, temperatures, f"schedule.stages[{rank}]")
+        instants = settings.instants(schedule.sample_every)
+        stages.append(Stage(rank, time, instants, new, temperatures, settings.measure))
+        scene_before, time = new, time + settings.duration
+    return stages
 
 
-def _built(settings, key):
-    """Return the scene of settings; an error says of which stage."""
+def scenes(scene: Scene, experiment: Experiment[StagesSettings]) -> list[Scene]:
+    """Return the initial scene of a gas and the scene of each stage, with common wall types.
+
+    Raises InputError for a stage that names an absent effect, or has an impossible scene.
+    """
+    run_scenes, settings = [scene], experiment
+    r, beta = scene.restitution, scene.roughness
+    for rank, stage in enumerate(experiment.schedule.stages):
+        key = f"schedule.stages[{rank}]"
+        for name in stage.effects:
+            if name not in settings.effects:
+                legal_names = ", ".join(sorted(settings.effects))
+                raise InputError(
+                    f"{key}.effects: key", name, f"be one of this experiment: {legal_names}"
+                )
+        r, beta = (
+            old if value is None else value for value, old in ((stage.r, r), (stage.beta, beta))
+        )
+        if stage.changes_scene:
+            settings, scene = _changed_scene(settings, stage.effects, r, beta, key)
+        run_scenes.append(scene)
+    return with_common_wall_types(run_scenes)
+
+
+def _changed_scene(settings, effects, r, beta, key):
+    """Return the settings with changed `effects`, and their scene at r and beta.
+
+    Raises InputError, which names the stage by `key`.
+    """
     try:
-        return build(settings, settings["r"], settings["beta"])
+        settings = settings.with_effects(effects)
+        return settings, build(settings, r, beta)
     except InputError as error:
         error.key = f"{key}: {error.key}"
         raise
 
 
-def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
-    """Return the T that a point simulates."""
-    return sum(one["duration"] for one in experiment["schedule"]["stages"])
+def length(scene: Scene, experiment: Experiment[StagesSettings]) -> float:
+    """Return the simulated time of a point, the sum of all stages, in T."""
+    return sum(stage.duration for stage in experiment.schedule.stages)
 
 
-def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
-    """Return the gas of a point in its first stage; `seed` may be a random generator."""
-    gas = steady.start(scene, experiment, seed, recorder, initial)
+def start(
+    scene: Scene,
+    experiment: Experiment[StagesSettings],
+    seed: Any,
+    initial: Sequence[InitialState] = (),
+) -> Gas:
+    """Return the gas of a point at its start, in the scene before the first stage.
+
+    `seed` is the seed of the point, or a random generator; `initial` has at most one state. Raises
+    InputError for a state of a gas that has cooled.
+    """
+    gas = steady.start(scenes(scene, experiment)[0], experiment, seed, initial)
     if gas.state.counts[EXPONENT]:
         legal = "come without last_memory, in which time has another unit"
         raise InputError("initial", "a gas that has cooled", legal)
     return gas
 
 
-def samples_per_period(schedule: Mapping[str, Any]) -> int:
-    """Return 1: averages are over all samples alike."""
+def samples_per_period(schedule: StagesSettings) -> int:
+    """Return 1, the number of samples in a period: averages weight all samples equally."""
     return 1
 
 
-def phases(scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
-    """Return infinity: no average is over a period of the drive."""
+def phases(scene: Scene, schedule: StagesSettings, every: int = 1) -> float:
+    """Return infinity, the number of sampled phases of a drive: no average is over its period."""
     return math.inf
 
 
-def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
-    """Raise InputError for stages that cannot be run, or measure nothing."""
+def check(scene: Scene, experiment: Experiment[StagesSettings]) -> None:
+    """Raise InputError for stages that cannot be simulated, or without a measured one."""
+    schedule = experiment.schedule
+    for rank, settings in enumerate(schedule.stages):
+        settings.check_instants(schedule.sample_every, f"schedule.stages[{rank}]")
     stages = course(scene, experiment)
-    every = interval(experiment)
-    for number, one in enumerate(stages):
-        key = f"schedule.stages[{number}]"
-        if not steady.is_whole(one.duration / every):
-            legal = f"be a whole multiple of schedule.sample_every, {every:g} T"
-            raise InputError(f"{key}.duration", one.duration, legal)
-        if number and stages[number - 1].measured and not one.measured:
+    for rank, stage in enumerate(stages):
+        key = f"schedule.stages[{rank}]"
+        if rank and stages[rank - 1].measured and not stage.measured:
             raise InputError(f"{key}.measure", False, "not be false after a stage that is measured")
     if not stages[-1].measured:
         key = f"schedule.stages[{len(stages) - 1}].measure"
         raise InputError(key, False, "be true of the last stage")
-    if stages[0].temperatures.rotation and not experiment.get("spin_temperature"):
-        legal = "be set by `spin_temperature` of the experiment, as particles begin without spin"
-        raise InputError(
-            "schedule.stages[0].spin_temperature", stages[0].temperatures.rotation, legal
-        )
-    sheared = [one.scene.effects.shear for one in stages if one.scene.effects.shear is not None]
-    if experiment.get("observables") and len({one.velocity for one in sheared}) > 1:
+    if experiment.observables:
+        _check_equal_intervals(schedule)
+    sheared = [
+        stage.scene.effects.shear for stage in stages if stage.scene.effects.shear is not None
+    ]
+    if experiment.observables and len({shear.velocity for shear in sheared}) > 1:
         raise InputError("observables", "with a shear that changes", "come with a constant one")
 
 
-def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
-    """Return the samples before any counts, those of stages that are not measured."""
-    stages = course(scene, experiment)
-    waited = sum(one.duration for one in stages if not one.measured)
+def _check_equal_intervals(schedule):
+    """Raise InputError for samples at unequal intervals, over which observables cannot average."""
+    default_interval = schedule.sample_every
+    spacings = [stage.instants(default_interval).spacing for stage in schedule.stages]
+    for rank, spacing in enumerate(spacings):
+        if spacing is None or not math.isclose(
+            spacing, spacings[0] or default_interval, rel_tol=LENGTH_ROUNDING
+        ):
+            # if this stage has the schedule's interval, the first one differs
+            rank = 0 if spacing == default_interval else rank
+            key, value = schedule.stages[rank].sampling_key()
+            legal = "be left out beside observables, which need all samples at equal intervals"
+            raise InputError(f"schedule.stages[{rank}].{key}", value, legal)
+
+
+def interval(experiment: Experiment[StagesSettings]) -> float:
+    """Return the interval between two samples in T; if intervals differ, the schedule's."""
+    schedule = experiment.schedule
+    instants = [stage.instants(schedule.sample_every) for stage in schedule.stages]
+    return common_spacing(instants) or schedule.sample_every
+
+
+def wait(scene: Scene, experiment: Experiment[StagesSettings]) -> int:
+    """Return the number of samples in the stages before the measurement.
+
+    Raises InputError if samples are not at equal intervals.
+    """
+    _check_equal_intervals(experiment.schedule)
+    waited = sum(stage.duration for stage in experiment.schedule.stages if not stage.measure)
     return round(waited / interval(experiment))
-
-
-def through(gas: Gas, stages: Sequence[Stage]) -> Iterator[tuple[Stage, np.ndarray]]:
-    """Let a gas begin each stage as soon as the one before has been run; yield it with what its
-    change has put in, (2,) in m a^2/T^2."""
-    for one in stages:
-        yield one, change(gas, one.scene, one.begin, one.temperatures)
 
 
 def run(
     scene: Scene,
-    experiment: Mapping[str, Any],
+    experiment: Experiment[StagesSettings],
     seed: int,
-    recorder: Recorder,
-    initial: Sequence[Initial] = (),
-) -> dict[str, Any]:
-    """Return the variables of the point (see roughgas.data.point), from one simulation.
+    simulation: Simulation,
+    initial: Sequence[InitialState] = (),
+) -> NamedValues:
+    """Simulate one gas and return the variables of the point by name (see roughgas.data.point).
 
-    Samples are taken every `sample_every` T, from the end of the first such interval on.
+    The end of each stage is its last sample. `initial` has the state that the gas begins in, if
+    any.
     """
-    gas = start(scene, experiment, seed, recorder, initial)
-    gas.keeps_books = True
+    samples = simulation.track("samples", SamplesWithBalance())
+    gas = start(scene, experiment, seed, initial)
     if initial:
-        gas.look()  # at running sums that others have begun
-    begun, sums, before, every = gas.time, gas.sample, gas.balance(), interval(experiment)
-    made = gas.begun + gas.collisions
-    stages = course(scene, experiment, begun)
-    rows: list[Columns] = []
-    series: list[list[Energies]] = []  # of all particles, and of each species
-    put_in = []
-    for stage, energy in through(gas, stages):
-        rows.append(_samples(gas, stage, every))
-        series.append([gas.energies(rows[-1]), *energies_of_each(rows[-1], gas.scene, gas.state)])
-        put_in.append(energy)
-    total, *species = (_joined(parts) for parts in zip(*series, strict=True))
-    changes, counts = np.array(put_in), [len(part["time"]) for part in rows]
-    first = sum(count for count, one in zip(counts, stages, strict=True) if not one.measured)
-    found = joined(rows)
-    collisions = 2.0 * (found["collisions"] - made) / gas.particles
-    window = total.map(lambda part: part[first:])
+        gas.sample_now()  # running sums may start from nonzero values
+    start_time, initial_sums, initial_balance = gas.time, gas.sample, gas.balance()
+    initial_collisions = gas.collisions_before_cooling + gas.collisions
+    stages = course(scene, experiment, start_time)
+    legs = [_stage_legs(stage, gas.particles, seed) for stage in stages]
+    simulation.follow(0, lambda: gas, lambda _: [leg for stage_legs in legs for leg in stage_legs])
+    rows = [concatenated([samples.rows(leg.name) for leg in stage_legs]) for stage_legs in legs]
+    series = [  # of all particles, and of each species
+        [
+            energies_of(columns, stage.scene, gas.state),
+            *species_energies(columns, stage.scene, gas.state),
+        ]
+        for stage, columns in zip(stages, rows, strict=True)
+    ]
+    total, *species = (_joined_energies(energies) for energies in zip(*series, strict=True))
+    changes = np.array([samples.changes(stage_legs[0].name)["put_in"] for stage_legs in legs])
+    counts = [len(columns["time"]) for columns in rows]
+    first = sum(count for count, stage in zip(counts, stages, strict=True) if not stage.measured)
+    columns_of_run = concatenated(rows)
+    collisions = 2.0 * (columns_of_run["collisions"] - initial_collisions) / gas.particles
     variables = {
-        **steady.averages(window, 1, every),
-        **contact_averages(found, first, 1, steady.inertia_of_sums(gas.scene), sums),
-        **_of_species(species, first),
-        **energy_exchange(before, gas.balance(), gas.scene, gas.particles, changes.sum(axis=0)),
-        "equilibrated": UNKNOWN,  # it need not settle in any stage
-        "measured_from": begun + first * every,
+        **_measured_averages(total, species, first, stages),
+        **contact_averages(
+            columns_of_run, first, 1, steady.inertia_of_contact_sums(gas.scene), initial_sums
+        ),
+        **energy_exchange(
+            initial_balance, gas.balance(), gas.scene, gas.particles, changes.sum(axis=0)
+        ),
+        "equilibrated": UNKNOWN,  # stages need not be steady
+        "measured_from": _measured_from(stages, first),
         "measured_collisions": collisions[-1] - (collisions[first - 1] if first else 0.0),
-        **steady.over_time(found["time"], total, 1),
+        **steady.period_mean_series(columns_of_run["time"], total, 1),
         "collisions_series": collisions,
-        **exchange_series(found, before, gas.scene, gas.particles, changes, counts),
-        "stage_begin": [one.begin for one in stages],
+        **exchange_series(
+            columns_of_run, initial_balance, gas.scene, gas.particles, changes, counts
+        ),
+        "stage_begin": [stage.begin for stage in stages],
         "stage_input": changes / gas.particles,
     }
-    if window.rotational is not None:
+    if total.rotational is not None:
         variables["R_ci95_trusted"] = UNKNOWN
-    return variables | verdicts_on_means(variables, UNKNOWN)
+    if _spacing(stages, measured=True) is None:
+        variables |= _without_errors(variables)
+    return variables | trust_of_means(variables, UNKNOWN)
 
 
-def _samples(gas, stage, every):
-    """Return the samples of a stage, the last of them to the last bit at its end: kicks may be due
-    at that instant, and every run has to give them before the change."""
-    count = round(stage.duration / every)
-    rows = [gas.in_time(every, count - 1)] if count > 1 else []
-    return joined([*rows, gas.in_time(stage.begin + stage.duration - gas.time, 1)])
+def _spacing(stages: Sequence[Stage], measured: bool = False) -> float | None:
+    """Return the interval between samples in all stages, or the `measured` ones; None if it varies.
+
+    It is in T.
+    """
+    return common_spacing([stage.instants for stage in stages if stage.measured or not measured])
 
 
-def _joined(parts):
-    return Energies(*map(np.concatenate, zip(*(one.there() for one in parts), strict=True)))
+def _measured_from(stages: Sequence[Stage], first: int) -> float:
+    """Return the start of the measurement in T, after `first` samples."""
+    every = _spacing(stages)
+    if every is not None:
+        return stages[0].begin + first * every
+    return next(stage.begin for stage in stages if stage.measured)
 
 
-def _of_species(parts, first):
-    """Return averages over what is measured, and series of all stages."""
-    found = driven_species([one.map(lambda part: part[first:]) for one in parts], 1, 1)
-    whole = driven_species(parts, 1, 1)
-    return found | {name: one for name, one in whole.items() if name.endswith("_series")}
+def _stage_legs(stage: Stage, particles: int, seed: Any) -> list[Leg]:
+    """Return the legs of a stage; the first one begins with the change of the gas.
+
+    The last sample is exactly at the end of the stage, to the last bit: kicks may be due at that
+    instant, and must precede the next change in every run.
+    """
+
+    def begin(gas: Gas) -> Changes:
+        """Switch the gas to the stage, and return the supplied energy by name."""
+        return {"put_in": stage.enter(gas, seed)}
+
+    def until(instant: float) -> Callable[[Gas], Sampling]:
+        """Return a function that makes the sampling up to `instant` (T, from the stage's start)."""
+        return lambda gas: timed_sampling(stage.begin + instant - gas.time, gas.particles)
+
+    rank, instants, legs = stage.rank, stage.instants, []
+    if instants.start:
+        legs.append(Leg(f"start of stage {rank}", PRESENT_SAMPLE, 1, stage.scene))
+    for index, instant in enumerate(instants.listed[:-1]):
+        name = f"sample {index} of stage {rank}"
+        legs.append(Leg(name, until(instant), 1, stage.scene, timed=True))
+    if instants.every is not None and instants.after_start > 1:
+        sampling = timed_sampling(instants.every, particles)
+        name, count = f"stage {rank}", instants.after_start - 1
+        legs.append(Leg(name, sampling, count, stage.scene, timed=True))
+    legs.append(Leg(f"end of stage {rank}", until(stage.duration), 1, stage.scene, timed=True))
+    return [legs[0]._replace(begin=begin), *legs[1:]]
+
+
+def _joined_energies(energies_of_stages):
+    """Return the energies of all stages, each (samples,), as one series."""
+    return Energies(
+        *map(
+            np.concatenate,
+            zip(*(energies.present_components() for energies in energies_of_stages), strict=True),
+        )
+    )
+
+
+def _measured_averages(total, species, first, stages):
+    """Return averages over the measured samples, from `first` on, and series of species, by name.
+
+    `total` and `species` are the energies (samples,) of all particles and of each species. The
+    series run through all stages.
+    """
+    every, window = _spacing(stages, measured=True), total.map(lambda energy: energy[first:])
+    weights, means = None, steady.mean_energies_and_R(window, 1, every or math.nan)
+    if every is None:
+        weights = np.concatenate([stage.instants.intervals() for stage in stages if stage.measured])
+        means |= _means_over_time(window, weights)
+    measured = [energies.map(lambda energy: energy[first:]) for energies in species]
+    all_averages = driven_species_averages(species, 1, 1)
+    series = {name: values for name, values in all_averages.items() if name.endswith("_series")}
+    return means | driven_species_averages(measured, 1, 1, weights) | series
+
+
+def _means_over_time(window: Energies, weights: np.ndarray) -> NamedValues:
+    """Return the mean energies and mean R over time, by name.
+
+    Each sample of the measured `window` is weighted with the interval before it, in `weights`
+    (samples,).
+    """
+    weighted = weights > 0.0  # samples at the beginning of a stage have no weight
+    window, mean = (
+        window.map(lambda energy: energy[weighted]),
+        partial(np.average, weights=weights[weighted]),
+    )
+    means = {"E_trans": mean(window.translational)}
+    if window.rotational is not None:
+        means |= {"E_rot": mean(window.rotational), "R": mean(ratio(window))}
+        means["R_ratio_of_means"] = ratio(window.map(mean))[()]
+    return means
+
+
+def _without_errors(variables: NamedValues) -> NamedValues:
+    """Return all errors among `variables`, set to NaN, and the reason: unequal intervals."""
+    endings = ("_stderr", "_dof", "_ci95", "autocorrelation_time")
+    errors: NamedValues = {
+        name: np.full(np.shape(value), math.nan)[()]
+        for name, value in variables.items()
+        if name.endswith(endings)
+    }
+    if "R_ci95_trusted" in variables:
+        errors[steady.LACK_VARIABLE] = UNEVEN_SAMPLING_LACK
+    return errors

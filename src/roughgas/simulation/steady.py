@@ -1,121 +1,157 @@
-"""A gas under steady driving: wait until it is stationary, then average over time."""
+"""The steady protocol: a driven gas is equilibrated, then R and the energies are averaged.
+
+Functions take the scene at the r and beta of a point, and the settings of its experiment. The
+measured window is the series of samples after equilibration.
+"""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError
+from roughgas.base import InputError, NamedValues
+from roughgas.base.fields import described
 from roughgas.effects import inertia
 from roughgas.effects.species import packing
-from roughgas.scene import Scene, assumes_flow, for_theory, walls_of
+from roughgas.scene import Scene, assumes_flow, theory_mixture, walls_of
 from roughgas.simulation.energies import (
     Columns,
     Energies,
-    EnergyBalance,
     contact_averages,
-    driven_species,
+    driven_species_averages,
     energies,
-    energies_of_each,
-    energy_exchange,
     ratio,
     ratio_of_means,
     shear_rates,
-    verdicts_on_means,
+    species_energies,
+    trust_of_means,
+    vertical_share,
 )
-from roughgas.simulation.gas import Gas, joined
-from roughgas.simulation.memory import Memory, Thermal, drags, memory
-from roughgas.simulation.recorder import KEY, Recorder, until_met
-from roughgas.simulation.restart import Initial
+from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
+from roughgas.simulation.error_target import TARGET_KEY, prolonged_until_met
+from roughgas.simulation.experiment import Duration, Experiment, Length, ScheduleSettings, Target
+from roughgas.simulation.gas import Gas, timed_sampling
+from roughgas.simulation.gas_memory import GasMemory, ThermalState, drag_rates, gas_memory
+from roughgas.simulation.initial_states import InitialState
+from roughgas.simulation.leg import Leg
+from roughgas.simulation.point_trackers import Samples
+from roughgas.simulation.simulation import Simulation
 from roughgas.statistics.errors import (
-    LEAST,
+    MINIMUM_SAMPLE_SIZE,
     YES,
-    Error,
-    Evidence,
+    SampleSize,
+    StandardError,
     autocorrelation_time,
     blocking,
     degrees_of_freedom,
-    lack_of,
+    describe_shortfall,
     period_means,
     verdict,
 )
 from roughgas.statistics.steady_state import detect_start, is_equilibrated
 
-# see roughgas.simulation.schedule.Kind
+
+class SteadySettings(ScheduleSettings, frozen=True, kw_only=True, tag="steady"):
+    """A driven gas in a steady state; lengths are in T."""
+
+    equilibrate: Annotated[Length, described("Time before the measurement, in T.")]
+    measure: Annotated[Duration, described("Length of the measurement, in T.")]
+    period: (
+        Annotated[
+            Duration,
+            described("Period of the drive in T; samples are averaged over whole periods."),
+        ]
+        | None
+    ) = None
+    target_stderr: Target | None = None
+
+
+# see roughgas.simulation.protocols.RunProtocol
+SETTINGS: type[ScheduleSettings] = SteadySettings
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "measure", 1
-KEPT = 4  # values in a period that the stored series have
-LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
-LEAST_PHASES = int(LEAST.phases)
-WHOLE = 1e-6  # by which a number of samples, or of periods, may miss a whole one
-LACK = "R_ci95_lack"
-"""What R lacks to be trusted, in words, among the variables of a run: it becomes a comment."""
-LEAST_IN_BED = LEAST._replace(memories=24)
-"""Evidence under gravity, where R is measured to remember up to twice as long as by theory."""
-LEAST_OF_MEANS = LEAST._replace(memories=96)
-"""Evidence for the errors of mean energies, of which a memory is an e-fold of the slowest one."""
+SERIES_VALUES_PER_PERIOD = 4  # in stored series
+MIN_SHARE_LEFT = 0.5  # of the planned measurement that a late start must leave
+REQUIRED_PHASES = int(MINIMUM_SAMPLE_SIZE.phases)
+WHOLE_TOLERANCE = 1e-6  # relative deviation of a number of samples, or periods, from an integer
+LACK_VARIABLE = "R_ci95_lack"
+"""Temporary variable with the missing evidence of R in words, which becomes a comment."""
+REQUIRED_IN_BED = MINIMUM_SAMPLE_SIZE._replace(memories=24)
+"""Evidence under gravity, where the measured memory of R is up to twice the theoretical one."""
+REQUIRED_FOR_MEANS = MINIMUM_SAMPLE_SIZE._replace(memories=96)
+"""Evidence for the errors of mean energies, in e-folds of the slowest relaxation."""
 
 
-def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
-    """Return the T that a point simulates."""
-    schedule = experiment["schedule"]
-    return schedule["equilibrate"] + schedule["measure"]
+def length(scene: Scene, experiment: Experiment[SteadySettings]) -> float:
+    """Return the simulated time of a point, equilibration and measurement, in T."""
+    schedule = experiment.schedule
+    return schedule.equilibrate + schedule.measure
 
 
-def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
-    """Return the gas of a point as it begins; `seed` may be a random generator."""
-    rng = np.random.default_rng(seed)
-    return Gas.start(scene, experiment, rng, recorder, *initial)
+def start(
+    scene: Scene, experiment: Experiment[Any], seed: Any, initial: Sequence[InitialState] = ()
+) -> Gas:
+    """Return the gas of a point at its start; `seed` may be a random generator.
+
+    `initial` has at most one state; with it, the gas begins there.
+    """
+    return Gas.start(scene, experiment, np.random.default_rng(seed), *initial)
 
 
 def sample(gas: Gas, every: float, samples: int) -> Columns:
-    """Return columns, sampled every so many T."""
+    """Advance a gas and return its samples, `every` T apart, as columns (samples,)."""
     return gas.in_time(every, samples)
 
 
-def interval(experiment: Mapping[str, Any]) -> float:
-    """Return the T between two samples."""
-    return experiment["schedule"]["sample_every"]
+def interval(experiment: Experiment[Any]) -> float:
+    """Return the interval between two samples, in T."""
+    return experiment.schedule.sample_every
 
 
-def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
-    """Raise InputError for lengths that make no whole period, or samples that miss phases of it."""
+def check(scene: Scene, experiment: Experiment[SteadySettings]) -> None:
+    """Raise InputError for lengths without a whole period, or samples that do not divide it.
+
+    With a target error the samples must also show enough phases of the drive.
+    """
     _check_momentum(scene, experiment)
-    schedule = experiment["schedule"]
-    measure, every = schedule["measure"], schedule["sample_every"]
-    period = schedule.get("period", every)
-    for name, own in drive_periods(scene).items():
-        if "period" not in schedule or not is_whole(period / own):
-            found = schedule.get("period", "(none)")
-            legal = f"be a whole multiple of that of {name}, {own:g} T"
-            raise InputError("schedule.period", found, legal)
+    schedule = experiment.schedule
+    measure, every = schedule.measure, schedule.sample_every
+    period = schedule.period or every
+    for name, drive_period in drive_periods(scene).items():
+        if schedule.period is None or not is_whole(period / drive_period):
+            value = "(none)" if schedule.period is None else schedule.period
+            legal = f"be a whole multiple of that of {name}, {drive_period:g} T"
+            raise InputError("schedule.period", value, legal)
     if not is_whole(period / every):
         legal = f"divide schedule.period, {period:g} T, into whole samples"
         raise InputError("schedule.sample_every", every, legal)
-    if sum(_planned(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
+    if sum(_planned_samples(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
         legal = f"hold a whole period, {period:g} T, after the whole ones of equilibrate"
         raise InputError("schedule.measure", measure, legal)
-    if KEY in schedule and phases(scene, schedule) < LEAST_PHASES:
-        legal = f"divide a period of the drive into {LEAST_PHASES} samples beside schedule.{KEY}"
+    if schedule.target_stderr is not None and phases(scene, schedule) < REQUIRED_PHASES:
+        legal = (
+            f"divide a period of the drive into {REQUIRED_PHASES} samples "
+            f"beside schedule.{TARGET_KEY}"
+        )
         raise InputError("schedule.sample_every", every, legal)
 
 
 def _check_momentum(scene, experiment):
-    """Refuse noise on single particles where nothing damps their total momentum.
+    """Raise InputError for noise on single particles if nothing damps their total momentum.
 
-    The centre of mass would diffuse, and its energy grow for ever: there is no steady state. Walls
-    damp the momentum across themselves, and along themselves if they are rough or thermal.
+    The velocity of the centre of mass would diffuse, and its energy grow for ever, without a steady
+    state. Walls damp the momentum across themselves, and along themselves if rough or thermal.
     """
-    effects, (drag, _) = scene.effects, drags(scene)
+    effects, (drag, _) = scene.effects, drag_rates(scene)
     bath = effects.langevin
     if bath is None or not bath.noise or drag > 0.0:
         return
     walls = walls_of(effects).values()
-    across = {wall.axis for wall in walls}
-    gripping = any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
-    if len(across) < len(scene.box) and not gripping:
-        power = experiment["effects"]["langevin"]["power"]
+    walled_axes = {wall.axis for wall in walls}
+    walls_grip = any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
+    if len(walled_axes) < len(scene.box) and not walls_grip:
+        power = experiment.effects["langevin"].power
         legal = (
             "be 0 without a drag in a steady state: noise on single particles heats the centre of "
             "mass of a periodic box for ever (the thermostat conserves momentum)"
@@ -124,82 +160,93 @@ def _check_momentum(scene, experiment):
 
 
 def drive_periods(scene: Scene) -> dict[str, float]:
-    """Return the period (T) of each effect that drives a gas periodically, by name."""
-    found = scene.effects._asdict().items()
-    periods = {name: getattr(one, "period", math.inf) for name, one in found}
+    """Return the periods (T) of the effects that drive a gas periodically, by name."""
+    effects = scene.effects._asdict().items()
+    periods = {name: getattr(effect, "period", math.inf) for name, effect in effects}
     return {name: period for name, period in periods.items() if period < math.inf}
 
 
-def phases(scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
-    """Return how many phases of the drive one in `every` samples shows; infinity where it has no
-    period."""
-    per_period = samples_per_period(schedule)
-    of_each = [
-        per_period // math.gcd(per_period, every * round(schedule["period"] / period))
+def phases(scene: Scene, schedule: SteadySettings, every: int = 1) -> float:
+    """Return the number of phases of the drive that every `every`-th sample shows.
+
+    It is infinite for a drive without period.
+    """
+    per_period, repetition = samples_per_period(schedule), schedule.period or schedule.sample_every
+    phase_counts = [
+        per_period // math.gcd(per_period, every * round(repetition / period))
         for period in drive_periods(scene).values()
     ]
-    return min(of_each, default=math.inf)
+    return min(phase_counts, default=math.inf)
 
 
-def _planned(schedule):
-    """Return the samples of the wait and of the measurement."""
-    every = schedule["sample_every"]
-    return tuple(round(schedule[part] / every) for part in ("equilibrate", "measure"))
+def _planned_samples(schedule):
+    """Return the planned numbers of samples of the equilibration and of the measurement."""
+    lengths = schedule.equilibrate, schedule.measure
+    return tuple(round(length / schedule.sample_every) for length in lengths)
 
 
 def is_whole(number: float) -> bool:
-    """Return whether a quotient of lengths is a whole number, at least 1."""
-    return number > 0.5 and abs(number - round(number)) <= WHOLE * number
+    """Return whether a quotient of lengths is an integer, at least 1, to within rounding."""
+    return number > 0.5 and abs(number - round(number)) <= WHOLE_TOLERANCE * number
 
 
-def samples_per_period(schedule: Mapping[str, Any]) -> int:
-    """Return the samples in a period of the drive; 1 if it has none."""
-    every = schedule["sample_every"]
-    return max(1, round(schedule.get("period", every) / every))
+def samples_per_period(schedule: SteadySettings) -> int:
+    """Return the number of samples in the schedule's period; 1 without a period."""
+    every = schedule.sample_every
+    return max(1, round((schedule.period or every) / every))
 
 
-def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
-    """Return the samples before any counts: whole periods."""
-    schedule = experiment["schedule"]
-    planned, _ = _planned(schedule)
+def wait(scene: Scene, experiment: Experiment[SteadySettings]) -> int:
+    """Return the number of samples of equilibration, rounded up to whole periods."""
+    schedule = experiment.schedule
+    planned, _ = _planned_samples(schedule)
     return -(-planned // samples_per_period(schedule)) * samples_per_period(schedule)
 
 
 def run(
     scene: Scene,
-    experiment: Mapping[str, Any],
+    experiment: Experiment[SteadySettings],
     seed: int,
-    recorder: Recorder,
-    initial: Sequence[Initial] = (),
-) -> dict[str, Any]:
-    """Return the variables of the point (see roughgas.data.point), from one simulation.
+    simulation: Simulation,
+    initial: Sequence[InitialState] = (),
+) -> NamedValues:
+    """Simulate one gas and return the variables of the point by name (see roughgas.data.point).
 
-    The schedule gives `equilibrate` and `measure` (T), `sample_every` (T), and `period` (T), over
-    whole multiples of which averages are formed. The measurement begins later than planned if the
-    energies say that the gas is not yet stationary, and the point is flagged if half of it would be
-    lost or the energies drift in what is left. R is vouched for only in a steady state, and where
-    samples show enough phases of a periodic drive. With a target, the measurement is prolonged.
+    The schedule has `equilibrate`, `measure`, `sample_every` and `period`, all in T; averages are
+    taken over whole periods. If the energies are not yet stationary, the measurement begins later
+    than planned. The point is flagged if half of the measurement would be lost, or if the energies
+    drift in the rest. R is trusted only in a steady state, and if samples show enough phases of a
+    periodic drive. With a target error, the measurement is prolonged.
     """
-    gas = start(scene, experiment, seed, recorder, initial)
+    samples = simulation.track("samples", Samples())
+    gas = start(scene, experiment, seed, initial)
     if initial:
-        gas.look()  # at running sums that others have begun
-    begun = Begun(gas.time, gas.sample, gas.balance(), gas.begun + gas.collisions)
-    theory = _theory(scene, experiment)
-    rows: Columns = {"time": np.empty(0)}
+        gas.sample_now()  # running sums may start from nonzero values
+    gas_start = GasStart(
+        gas.time, gas.sample, gas.balance(), gas.collisions_before_cooling + gas.collisions
+    )
+    theory = _theory_of_gas(scene, experiment)
 
     def run_to(schedule):
-        nonlocal rows
-        recorder.expect(length(scene, {"schedule": schedule}))
-        more = gas.in_time(schedule["sample_every"], sum(_planned(schedule)) - len(rows["time"]))
-        rows = joined([rows, more]) if len(rows["time"]) else more
-        variables = _measure(gas, schedule, rows, begun, theory)
+        """Prolong the run to a schedule; return the variables, and whether R may be trusted."""
+        simulation.expect(schedule.equilibrate + schedule.measure)
+        leg = driven_leg(gas, schedule)
+        simulation.follow(0, lambda: gas, lambda _: [leg])
+        rows = samples.rows(leg.name, leg.samples)
+        variables = _measured_variables(gas, schedule, rows, gas_start, theory)
         return variables, variables.get("R_ci95_trusted") == YES
 
-    return until_met(experiment["schedule"], LENGTH, run_to)
+    return prolonged_until_met(experiment.schedule, LENGTH, run_to)
 
 
-class Begun(NamedTuple):
-    """A gas as its time begins to count: the time, running sums, energy balance and collisions."""
+def driven_leg(gas: Gas, schedule: SteadySettings) -> Leg:
+    """Return the only leg of a driven gas: equilibration and measurement with equal sampling."""
+    sampling = timed_sampling(schedule.sample_every, gas.particles)
+    return Leg("driven", sampling, sum(_planned_samples(schedule)), gas.scene, timed=True)
+
+
+class GasStart(NamedTuple):
+    """Time (T), running sums, energy balance and number of collisions of a gas at its start."""
 
     time: float
     sums: Columns
@@ -207,164 +254,199 @@ class Begun(NamedTuple):
     collisions: int
 
 
-class Theory(NamedTuple):
-    """What theory makes of a measured state, and the lengths of the box that the state has."""
+class TheoryOfGas(NamedTuple):
+    """The memory times of a gas by theory, as a function of its measured state, and its box.
 
-    memory: Callable[[Thermal], Memory]
+    `lengths` are the sides of the box, infinite along an open axis.
+    """
+
+    memory: Callable[[ThermalState], GasMemory]
     lengths: tuple[float, ...]  # a
 
 
-def _theory(scene: Scene, experiment: Mapping[str, Any]) -> Theory:
-    lengths = tuple(math.inf if side == "open" else float(side) for side in experiment["box"])
-    mixture = for_theory(scene, experiment)
-    dense = mixture is not None and math.isfinite(math.prod(lengths))
-    filled = packing(experiment) if dense else 0.0
-    return Theory(partial(memory, scene, mixture=mixture, packing=filled), lengths)
-
-
-def _measure(
-    gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun, theory: Theory
-) -> dict[str, Any]:
-    """Return the variables of a run, `rows` being its samples since it began."""
-    scene, every, per_period = gas.scene, schedule["sample_every"], samples_per_period(schedule)
-    planned, length = _planned(schedule)
-    series = gas.energies(rows)
-    first, settled = _start(series, planned, length, per_period)
-    before = rows["collisions"][first - 1] if first else begun.collisions
-    window = series.map(lambda part: part[first:])
-    species = [
-        energies.map(lambda part: part[first:])
-        for energies in energies_of_each(rows, scene, gas.state)
-    ]
-    waited = 2 * before / gas.particles
-    passed = Passed(
-        2 * (rows["collisions"][-1] - before) / gas.particles, len(window.translational) * every
+def _theory_of_gas(scene: Scene, experiment: Experiment[SteadySettings]) -> TheoryOfGas:
+    """Return the function of memory times, and the sides of the box, for a point's scene."""
+    lengths = tuple(math.inf if side is None else side for side in experiment.lengths)
+    mixture = theory_mixture(scene, experiment)
+    has_packing = mixture is not None and math.isfinite(math.prod(lengths))
+    packing_fraction = packing(experiment) if has_packing else 0.0
+    return TheoryOfGas(
+        partial(gas_memory, scene, mixture=mixture, packing=packing_fraction), lengths
     )
-    state = _thermal(species or [window], passed.frequency, gas.particles, theory.lengths)
-    remembers = _with_fixed_spins(theory.memory(state), state, window)
+
+
+def _measured_variables(
+    gas: Gas, schedule: SteadySettings, rows: Columns, gas_start: GasStart, theory: TheoryOfGas
+) -> NamedValues:
+    """Return the variables of a run by name, from all its samples `rows` (columns by name)."""
+    scene, every, per_period = gas.scene, schedule.sample_every, samples_per_period(schedule)
+    planned, length = _planned_samples(schedule)
+    series = gas.energies(rows)
+    first, settled = _measurement_start(series, planned, length, per_period)
+    collisions_before = rows["collisions"][first - 1] if first else gas_start.collisions
+    window = series.map(lambda values: values[first:])
+    species = [
+        energies.map(lambda values: values[first:])
+        for energies in species_energies(rows, scene, gas.state)
+    ]
+    waited = 2 * collisions_before / gas.particles
+    measured = MeasuredLength(
+        2 * (rows["collisions"][-1] - collisions_before) / gas.particles,
+        len(window.translational) * every,
+    )
+    state = _thermal_state(species or [window], measured.frequency, gas.particles, theory.lengths)
+    memory_times = _with_fixed_spins(theory.memory(state), state, window)
     periods = len(window.translational) // per_period
-    evidence = _evidence(waited, passed, periods, remembers)
-    least = LEAST if scene.effects.gravity is None else LEAST_IN_BED
-    steady = evidence.verdict(settled, least)
+    evidence = _evidence_of_window(waited, measured, periods, memory_times)
+    required = MINIMUM_SAMPLE_SIZE if scene.effects.gravity is None else REQUIRED_IN_BED
+    steady = evidence.verdict(settled, required)
     variables = {
-        **averages(window, per_period, every),
-        **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
-        **_unsubtracted(gas, rows, first),
-        **driven_species(species, per_period, max(1, per_period // KEPT)),
-        **energy_exchange(begun.balance, gas.balance(), scene, gas.particles),
+        **mean_energies_and_R(window, per_period, every),
+        **contact_averages(rows, first, per_period, inertia_of_contact_sums(scene), gas_start.sums),
+        **_vertical_share(gas, rows, window.translational, per_period),
+        **_unsubtracted_energies(gas, rows, first),
+        **driven_species_averages(
+            species, per_period, max(1, per_period // SERIES_VALUES_PER_PERIOD)
+        ),
+        **energy_exchange(gas_start.balance, gas.balance(), scene, gas.particles),
         "equilibrated": steady,
-        "slowest_relaxation": remembers.energies,
-        "flow_relaxation": remembers.flow,
-        "measured_from": begun.time + first * every,
-        "measured_collisions": passed.collisions,
-        **over_time(rows["time"][first:], window, max(1, per_period // KEPT)),
+        "slowest_relaxation": memory_times.energies,
+        "flow_relaxation": memory_times.flow,
+        "measured_from": gas_start.time + first * every,
+        "measured_collisions": measured.collisions,
+        **period_mean_series(
+            rows["time"][first:], window, max(1, per_period // SERIES_VALUES_PER_PERIOD)
+        ),
     }
-    shown = phases(scene, schedule)
-    of_means = Evidence(phases=shown, memories=_quotient(passed.time, remembers.energies))
-    variables |= verdicts_on_means(variables, int(verdict(steady, of_means, LEAST_OF_MEANS)))
+    phases_shown = phases(scene, schedule)
+    means_evidence = SampleSize(
+        phases=phases_shown, memories=_quotient_or_infinity(measured.time, memory_times.energies)
+    )
+    variables |= trust_of_means(variables, int(verdict(steady, means_evidence, REQUIRED_FOR_MEANS)))
     if window.rotational is None:
         return variables
-    of_ratio = Evidence(
-        phases=shown,
-        memories=_quotient(passed.time, remembers.of_R),
-        times=passed.time / variables["autocorrelation_time"],
+    ratio_evidence = SampleSize(
+        phases=phases_shown,
+        memories=_quotient_or_infinity(measured.time, memory_times.of_R),
+        times=measured.time / variables["autocorrelation_time"],
     )
-    variables["R_ci95_trusted"] = int(verdict(steady, of_ratio))
-    lack = lack_of(evidence, least) or lack_of(of_ratio, LEAST)
-    return variables | {"memory_of_R": remembers.of_R, LACK: lack}
+    variables["R_ci95_trusted"] = int(verdict(steady, ratio_evidence))
+    lack = describe_shortfall(evidence, required) or describe_shortfall(
+        ratio_evidence, MINIMUM_SAMPLE_SIZE
+    )
+    return variables | {"memory_of_R": memory_times.of_R, LACK_VARIABLE: lack}
 
 
-class Passed(NamedTuple):
-    """How long a stretch of a run is."""
+class MeasuredLength(NamedTuple):
+    """The length of the measured window, in collisions per particle and in T."""
 
     collisions: float  # of each particle
     time: float  # T
 
     @property
     def frequency(self) -> float:
-        """Contacts of a particle per T."""
+        """Number of contacts of a particle per T."""
         return self.collisions / self.time
 
 
-def _evidence(waited: float, passed: Passed, periods: int, remembers: Memory) -> Evidence:
-    """Return what a window rests on, that `passed` after the gas had `waited` for so many
-    collisions per particle.
+def _evidence_of_window(
+    waited: float, measured: MeasuredLength, periods: int, memory_times: GasMemory
+) -> SampleSize:
+    """Return the amounts of data in a measured window.
 
-    Where R has no memory that theory knows, the energies have: twice the e-fold of the slowest.
+    It began after `waited` collisions per particle. `periods` is the number of periods of the drive
+    in it, and `memory_times` come from theory. If theory gives no memory of R, twice the slowest
+    e-fold of the energies takes its place.
     """
-    known = 0.0 < remembers.of_R < math.inf
-    longest = remembers.of_R if known else 2.0 * remembers.energies
-    return Evidence(
-        collisions=passed.collisions,
+    has_memory = 0.0 < memory_times.of_R < math.inf
+    memory = memory_times.of_R if has_memory else 2.0 * memory_times.energies
+    return SampleSize(
+        collisions=measured.collisions,
         samples=periods,
-        relaxations=_relaxations(waited, passed, remembers.energies),
-        memories=_quotient(passed.time, longest),
+        relaxations=_transient_relaxations(waited, measured, memory_times.energies),
+        memories=_quotient_or_infinity(measured.time, memory),
     )
 
 
-def _quotient(length: float, unit: float) -> float:
+def _quotient_or_infinity(length: float, unit: float) -> float:
+    """Return `length` over `unit`; infinity unless the unit is positive."""
     return length / unit if unit > 0.0 else math.inf
 
 
-def _with_fixed_spins(remembers: Memory, state: Thermal, window: Energies) -> Memory:
-    """Return how long a gas remembers, whose spins may never change: then R is 0 for ever, or what
-    they were at the start decides."""
+def _with_fixed_spins(memory_times: GasMemory, state: ThermalState, window: Energies) -> GasMemory:
+    """Return the memory times, corrected if spins never change in the measured window.
+
+    Then R is 0 for ever, or depends on the initial spins: its memory is 0 or infinite.
+    """
     if state.T_rot is not None:
-        return remembers
-    spinning = window.rotational is not None and bool(window.rotational.any())
-    return remembers._replace(of_R=math.inf if spinning else 0.0)
+        return memory_times
+    has_spin = window.rotational is not None and bool(window.rotational.any())
+    return memory_times._replace(of_R=math.inf if has_spin else 0.0)
 
 
-def _thermal(
+def _thermal_state(
     species: Sequence[Energies], frequency: float, particles: int, lengths: tuple[float, ...]
-) -> Thermal:
-    """Return the state of a gas from the energies of its species: T is twice an energy.
+) -> ThermalState:
+    """Return the thermal state of a gas: T_tr and T_rot of its species, and constants.
 
-    Spins that never change are left out: no contact, and nothing else, relaxes them.
+    Temperatures are twice the mean energies (samples,) in `species`; `frequency` is the number of
+    contacts of a particle per T, and `lengths` are the sides of the box in a. Spins that never
+    change are left out, since nothing relaxes them.
     """
     T_tr = 2.0 * np.array([energies.translational.mean() for energies in species])
     spins = [energies.rotational for energies in species if energies.rotational is not None]
     changing = any(np.ptp(rotational) > 0.0 for rotational in spins)
     T_rot = 2.0 * np.array([rotational.mean() for rotational in spins]) if changing else None
-    return Thermal(T_tr, T_rot, frequency, particles, lengths)
+    return ThermalState(T_tr, T_rot, frequency, particles, lengths)
 
 
-def _relaxations(waited: float, passed: Passed, slowest: float) -> float:
-    """Return the e-folds of the slowest mode that a transient has had to decay in.
+def _transient_relaxations(waited: float, measured: MeasuredLength, slowest: float) -> float:
+    """Return the decay of the transient before the window, in e-folds of the slowest mode.
 
-    Of a transient that is exp(-m) when a window of w e-folds begins, the mean has a share of
-    exp(-m)/w: the window itself counts for ln w. `waited` is in collisions per particle.
+    A transient with amplitude exp(-m) at the start of a window of w e-folds contributes exp(-m)/w
+    to the mean: the window itself counts for ln w. `waited` is in collisions per particle, and
+    `slowest` is the e-fold of the mode in T.
     """
-    within = _quotient(passed.time, slowest)
-    if not (within > 0.0 and passed.collisions > 0.0):
+    window_relaxations = _quotient_or_infinity(measured.time, slowest)
+    if not (window_relaxations > 0.0 and measured.collisions > 0.0):
         return -math.inf
-    return within * waited / passed.collisions + math.log(within)
+    return window_relaxations * waited / measured.collisions + math.log(window_relaxations)
 
 
-def _start(series, planned, length, per_period):
-    """Return the first sample to measure, after whole periods, and whether the rest is steady."""
-    means = [period_means(part, per_period) for part in series.there()]
+def _measurement_start(series, planned, length, per_period):
+    """Return the index of the first measured sample, and whether the samples from there are steady.
+
+    It follows whole periods of `per_period` samples. `series` are the energies (samples,),
+    `planned` and `length` the planned numbers of samples of equilibration and measurement.
+    """
+    means = [period_means(energy, per_period) for energy in series.present_components()]
     first = -(-planned // per_period) * per_period
     start = per_period * detect_start(*means, planned=first // per_period)
-    if planned + length - start < LEAST_LEFT * length:
+    if planned + length - start < MIN_SHARE_LEFT * length:
         return first, False
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def averages(window, per_period, every):
-    """Return the energies, and how they are shared between translation and rotation, steady or
-    not."""
-    found = {
+def mean_energies_and_R(window, per_period, every):
+    """Return E_trans, E_rot and R averaged over a window, with errors, by name; steady or not.
+
+    `window` are the energies (samples,), `per_period` the samples in a period of the drive, and
+    `every` is the interval between samples in T.
+    """
+    averages = {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(period_means(window.translational, per_period))[0],
     }
     if window.rotational is None:
-        return found
+        return averages
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
-    error, correlated = Error(stderr, degrees_of_freedom(blocks)), autocorrelation_time(R_periods)
-    return found | {
+    error, correlation_time = (
+        StandardError(stderr, degrees_of_freedom(blocks)),
+        autocorrelation_time(R_periods),
+    )
+    return averages | {
         "R": R.mean(),
         "R_stderr": error.stderr,
         "R_dof": error.dof,
@@ -372,35 +454,56 @@ def averages(window, per_period, every):
         "R_ratio_of_means": ratio_of_means(window),
         "E_rot": window.rotational.mean(),
         "E_rot_stderr": blocking(period_means(window.rotational, per_period))[0],
-        "autocorrelation_time": correlated * per_period * every,
+        "autocorrelation_time": correlation_time * per_period * every,
     }
 
 
-def over_time(time, window, together):
-    """Return what is stored over time: means of so many samples each."""
-    found = {"time": time, "E_trans_series": window.translational}
+def period_mean_series(time, window, samples_per_value):
+    """Return the series of time, E_trans, E_rot and R, by name.
+
+    `time` (samples,) is in T and `window` are the energies (samples,). Each value averages
+    `samples_per_value` samples.
+    """
+    series = {"time": time, "E_trans_series": window.translational}
     if window.rotational is not None:
-        found |= {"R_series": ratio(window), "E_rot_series": window.rotational}
-    return {name: period_means(values, together) for name, values in found.items()}
+        series |= {"R_series": ratio(window), "E_rot_series": window.rotational}
+    return {name: period_means(values, samples_per_value) for name, values in series.items()}
 
 
-def inertia_of_sums(scene: Scene) -> float:
-    """Return the q that sums over contacts belong to."""
+def inertia_of_contact_sums(scene: Scene) -> float:
+    """Return the q that weights sums over contacts: 1 in a mixture or without spin."""
     q = inertia(scene.effects)
     return 1.0 if q is None or scene.effects.species is not None else q
 
 
-def _unsubtracted(gas, rows, first):
-    """Return energies of a sheared gas with its mean flow and mean spin left in, not meant by R."""
-    effects, found = gas.scene.effects, {}
+def _vertical_share(gas, rows, translational, per_period):
+    """Return the share of vertical motion in the translational energy of a bed, with its errors.
+
+    It is averaged over the last samples of `rows`, whose E_trans is `translational` (samples,);
+    `per_period` is the number of samples in a period of the drive. Without gravity the result is
+    empty.
+    """
+    if gas.scene.effects.gravity is None:
+        return {}
+    window = {name: values[-len(translational) :] for name, values in rows.items()}
+    return vertical_share(window, translational, gas.particles, per_period)
+
+
+def _unsubtracted_energies(gas, rows, first):
+    """Return energies and R of a sheared gas that include its mean flow and mean spin, by name.
+
+    They are averages over the samples `rows` from the index `first` on. Without such a flow the
+    result is empty.
+    """
+    effects, variables = gas.scene.effects, {}
     if not assumes_flow(effects):
         return {}
     if effects.shear is None:
-        found["shear_rate"] = shear_rates(rows, gas.state)[first:].mean()
+        variables["shear_rate"] = shear_rates(rows, gas.state)[first:].mean()
     series = energies(rows, gas.particles, inertia(effects))
-    window = series.map(lambda part: part[first:])
-    found["E_trans_unsubtracted"] = window.translational.mean()
+    window = series.map(lambda energy: energy[first:])
+    variables["E_trans_unsubtracted"] = window.translational.mean()
     if window.rotational is not None:
-        found["E_rot_unsubtracted"] = window.rotational.mean()
-        found["R_unsubtracted"] = ratio(window).mean()
-    return found
+        variables["E_rot_unsubtracted"] = window.rotational.mean()
+        variables["R_unsubtracted"] = ratio(window).mean()
+    return variables

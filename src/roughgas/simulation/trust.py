@@ -1,30 +1,32 @@
-"""Whether the errors of observables are to be trusted, and the evidence that they lack.
+"""Flags of trust for the errors of observables, and descriptions of missing evidence.
 
-Theory says how long a window must be, so that a run's luck does not; its data may only veto: by a
-series that is short against its own autocorrelation time, or whose variance a few rare visits make.
+A flag is 1 (yes), 0 (no) or -1 (not known). Theory determines the necessary length of a window, so
+that chance does not. The data of a run can only veto: if a series is short compared with its
+autocorrelation time, or if a few rare visits dominate its variance.
 """
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from roughgas.base import Record
 from roughgas.scene import Scene
-from roughgas.simulation import schedule
-from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES, Evidence, verdict
+from roughgas.simulation import protocols
+from roughgas.simulation.experiment import Experiment
+from roughgas.statistics.errors import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES, SampleSize, verdict
 
 
-class Window(NamedTuple):
-    """A measured window, as an observable has looked at it."""
+class ObservedWindow(NamedTuple):
+    """Length and steadiness of the measured window, as an observable shows it."""
 
     steady: int  # a flag
-    memories: float  # e-folds of the slowest temperature, or flow, that it is long
-    phases: float  # of each periodic drive that looks show
+    memories: float  # length in e-folds of the slowest temperature, or flow
+    phases: float  # observed phases of each periodic drive
 
 
 class Trust(NamedTuple):
-    """Flags in the shape of a variable, and the evidence that is missing where they are not YES."""
+    """Flags in the shape of a variable, and the missing evidence if some are not YES."""
 
     flags: np.ndarray
     lack: str
@@ -32,76 +34,98 @@ class Trust(NamedTuple):
 
 def window_of(
     scene: Scene,
-    experiment: Mapping[str, Any],
-    point: Mapping[str, Any],
-    looks: tuple[int, int],
-    of_flow: bool = False,
-) -> Window:
-    """Return the window of `looks`, their number and the samples from one to the next, at a gas
-    with the variables of a `point`; in e-folds of flows, too, if the observable is one `of_flow`.
+    experiment: Experiment,
+    point: Record,
+    observations: tuple[int, int],
+    depends_on_flow: bool = False,
+) -> ObservedWindow:
+    """Return the measured window of an observable, from the variables of its `point`.
+
+    `observations` are their number and their interval in samples. For an observable that
+    `depends_on_flow` the length is in e-folds of flows, too.
     """
-    number, every = looks
-    kind, length = schedule.of(experiment), number * every * experiment["schedule"]["sample_every"]
-    if not kind.DRIVEN:
-        return Window(int(point.get("R_ci95_trusted", UNKNOWN)), math.inf, math.inf)
+    number, every = observations
+    protocol, length = (
+        protocols.protocol_of(experiment),
+        number * every * experiment.schedule.sample_every,
+    )
+    if not protocol.DRIVEN:
+        return ObservedWindow(int(point.get("R_ci95_trusted", UNKNOWN)), math.inf, math.inf)
     relaxation = float(point.get("slowest_relaxation", math.nan))
-    if of_flow:
+    if depends_on_flow:
         relaxation = max(relaxation, float(point.get("flow_relaxation", math.nan)))
     memories = length / relaxation if relaxation > 0.0 else math.nan
-    phases = kind.phases(scene, experiment["schedule"], every)
-    return Window(int(point["equilibrated"]), memories, phases)
+    phases = protocol.phases(scene, experiment.schedule, every)
+    return ObservedWindow(int(point["equilibrated"]), memories, phases)
 
 
 def trust_in(
-    value: np.ndarray, stderr: np.ndarray, evidence: Evidence, window: Window, relaxations: float
+    value: np.ndarray,
+    stderr: np.ndarray,
+    evidence: SampleSize,
+    window: ObservedWindow,
+    relaxations: float,
 ) -> Trust:
-    """Return whether to trust the errors of a variable that needs `relaxations` e-folds."""
-    least = LEAST._replace(memories=relaxations)
-    if math.isinf(window.memories):  # of replicas, whose errors need no length
-        least = LEAST
+    """Return the trust in the errors `stderr` of a variable's `value`, arrays of the same shape.
+
+    `evidence` are the amounts of data behind each element. The variable needs a `window` of
+    `relaxations` e-folds of the slowest relaxation.
+    """
+    required = MINIMUM_SAMPLE_SIZE._replace(memories=relaxations)
+    if math.isinf(window.memories):  # of replicas: independent of the length
+        required = MINIMUM_SAMPLE_SIZE
     evidence = evidence._replace(memories=window.memories, phases=window.phases)
     finite = np.isfinite(value) & np.isfinite(stderr)
-    flags = np.broadcast_to(verdict(window.steady, evidence, least), finite.shape)
+    flags = np.broadcast_to(verdict(window.steady, evidence, required), finite.shape)
     flags = np.where(finite | (flags == NO), flags, UNKNOWN).astype(np.int8)
-    lack = _lack_of_window(window, least) or _lack_of_elements(flags, evidence, least)
+    lack = _lack_of_window(window, required) or _lack_of_elements(flags, evidence, required)
     return Trust(flags, lack if (flags != YES).any() else "")
 
 
-def _lack_of_window(window: Window, least: Evidence) -> str:
-    """Return the evidence that a window lacks, in words; nothing where it is enough."""
+def _lack_of_window(window: ObservedWindow, required: SampleSize) -> str:
+    """Return the evidence that a window lacks, in words; empty if it reaches `required`."""
     if window.steady != YES:
         return "no steady state" if window.steady == NO else "steady state not known"
     lacks = []
-    if math.isinf(least.memories):
+    if math.isinf(required.memories):
         lacks.append("needed length of the window not known")
-    elif not window.memories > 0.0:  # in no time, or not known
+    elif not window.memories > 0.0:  # zero or NaN
         lacks.append("relaxation time not known")
-    elif window.memories < least.memories:
-        lacks.append(_short("window of {} relaxation time{}", window.memories, least.memories))
-    if window.phases < least.phases:
-        lacks.append(_short("{} phase{} of the drive", window.phases, least.phases))
+    elif window.memories < required.memories:
+        lacks.append(
+            _shortage("window of {} relaxation time{}", window.memories, required.memories)
+        )
+    if window.phases < required.phases:
+        lacks.append(_shortage("{} phase{} of the drive", window.phases, required.phases))
     return "; ".join(lacks)
 
 
-def _short(text: str, number: float, limit: float) -> str:
+def _shortage(text: str, number: float, limit: float) -> str:
+    """Return in words that `number` is less than `limit`.
+
+    `text` has two places, for the number and for a plural s.
+    """
     count = math.floor(number)
     return f"{text.format(count, '' if count == 1 else 's')}, {limit:g} needed"
 
 
-OF_ELEMENTS = {
+ELEMENT_LACKS = {
     "runs": "fewer than {:g} replicas",
     "samples": "fewer than {:g} looks",
     "times": "shorter than {:g} autocorrelation times",
-    "carriers": "variance from fewer than {:g} looks",
+    "effective_samples": "variance from fewer than {:g} looks",
 }
-"""Evidence of which each element of a variable has another amount, and what is said of a lack."""
+"""Kinds of evidence that differ among the elements of a variable, and the texts for a lack."""
 
 
-def _lack_of_elements(flags: np.ndarray, evidence: Evidence, least: Evidence) -> str:
-    """Return the first lack of each element that is not trusted, joined."""
+def _lack_of_elements(flags: np.ndarray, evidence: SampleSize, required: SampleSize) -> str:
+    """Return, in words, the first missing evidence of each element whose flag is not YES, joined.
+
+    The amounts of data in `evidence` have the shape of `flags`, and are compared with `required`.
+    """
     doubted, lacks = flags != YES, []
-    for name, text in OF_ELEMENTS.items():
-        limit = getattr(least, name)
+    for name, text in ELEMENT_LACKS.items():
+        limit = getattr(required, name)
         short = doubted & ~np.greater_equal(getattr(evidence, name), limit)
         if short.any():
             lacks.append(text.format(limit))

@@ -1,15 +1,15 @@
 """Theory of gases of rough, inelastic disks and spheres: closed forms and rate equations.
 
-Everything is a function of plain numbers or numpy arrays that broadcast against each other, in
-double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one, or
-NaN, raises `roughgas.base.InputError`. The same everywhere are `r` in [0, 1] and `beta` in
-[-1, 1], the normal and tangential restitution; `dimension` D, an int, 2 or 3; and `inertia`
-q = I/(m a^2) > 0, by default that of uniform disks or spheres.
+Functions take plain numbers or numpy arrays that broadcast against each other, in double precision;
+plain numbers return a numpy float. Arguments are checked: an illegal argument, or NaN, raises
+`roughgas.base.InputError`. Common arguments are `r` in [0, 1] and `beta` in [-1, 1], the normal and
+tangential restitution; `dimension` D, an int, 2 or 3; and `inertia` q = I/(m a^2) > 0, by default
+the value of uniform disks or spheres.
 
 Units: particle radius a, mass m and time unit T are 1. A granular temperature is T = 2 E, twice the
 kinetic energy per degree of freedom: T_tr = m <v^2>/D and T_rot = m q a^2 <omega^2>/(2D-3), in
 m a^2/T^2. theta = T_rot/T_tr = 1/K and R = theta/(1 + theta). Time is often counted in collisions
-per particle: one collision counts for both its particles.
+per particle: a collision counts for both its particles.
 """
 
 from roughgas.theory.arguments import moment_of_inertia
@@ -30,7 +30,7 @@ from roughgas.theory.closed_forms import (
     shear_factor,
 )
 from roughgas.theory.friction import (
-    ESCAPED,
+    RUNAWAY_R,
     cooling_rate,
     critical_friction,
     friction_changes,
@@ -88,6 +88,7 @@ from roughgas.theory.transport import (
     rotational_diffusion,
     self_diffusion,
     shear_viscosity,
+    spin_corrections,
     thermal_conductivity,
 )
 from roughgas.theory.viscoelastic import (

@@ -1,9 +1,11 @@
-"""Checks of the arguments of theory: each returns them as double precision arrays.
+"""Checks of the arguments of theory, and ratios of energies that neither overflow nor lose digits.
 
-All raise InputError with the name of the argument, the first illegal value, and what is legal. NaN
-and what is not a number are illegal everywhere.
+Each check returns its argument as a double precision array, and raises InputError with the name of
+the argument, the first illegal value and the legal range. NaN and values of other types than
+numbers are illegal everywhere. Two energies are kept as shares of their sum.
 
-Two energies as shares of their sum: ratios of them then neither overflow nor lose digits.
+Symbols: normal restitution r, roughness (tangential restitution) beta, number of dimensions D,
+moment of inertia q = I/(m a^2) of particles of mass m and radius a.
 """
 
 from typing import NamedTuple
@@ -14,14 +16,14 @@ from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
 
 POSITIVE, NOT_NEGATIVE = Interval("(0, inf)"), Interval("[0, inf)")
 SHARE = Interval("[0, 1]")
-"""Share s of a drive's power that goes into spin."""
+"""Share s of the power of a drive that goes into spin."""
 NET_SHARE = Interval("[-1, 2]")
-"""The same for a drive that may take energy out of one motion."""
+"""Share s of the net power that goes into spin, of a drive that may also extract energy."""
 CORRELATION = Interval("[-1, 1]")
 FRICTION = Interval("[0, inf]")
 """Friction coefficient mu; infinite where contacts never slide."""
-IN_WORDS = {POSITIVE: "be a positive number", NOT_NEGATIVE: "be a number >= 0"}
-LEGAL = {
+LEGAL_IN_WORDS = {POSITIVE: "be a positive number", NOT_NEGATIVE: "be a number >= 0"}
+INTERVALS = {
     "restitution r": RESTITUTION,
     "roughness beta": ROUGHNESS,
     "inertia q": POSITIVE,
@@ -30,11 +32,14 @@ LEGAL = {
     "spin share of the drive": SHARE,
     "net spin share of the drive": NET_SHARE,
 }
-"""What is legal by the name in messages; NOT_NEGATIVE for any other."""
+"""Legal intervals by the names of arguments in messages; NOT_NEGATIVE for other names."""
 
 
 class Material(NamedTuple):
-    """Checked properties of the particles: r, beta and q are arrays, D an int."""
+    """Checked properties of the particles: restitution r and roughness beta, D (an int), inertia q.
+
+    r, beta and q are arrays, which broadcast against each other.
+    """
 
     r: np.ndarray
     beta: np.ndarray
@@ -43,17 +48,24 @@ class Material(NamedTuple):
 
     @property
     def eta(self) -> np.ndarray:
-        """q (1 + beta)/[2 (1 + q)]."""
+        """Tangential velocity change over the slip velocity, eta = q (1 + beta)/[2 (1 + q)]."""
         return self.inertia * (1 + self.beta) / (2 * (1 + self.inertia))
 
 
 def moment_of_inertia(dimension: int) -> float:
-    """Return the moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5)."""
+    """Return the moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5).
+
+    Raises InputError unless `dimension` is 2 or 3.
+    """
     return {2: 1 / 2, 3: 2 / 5}[check_dimension(dimension)]
 
 
 def material(r, beta, dimension=2, inertia=None) -> Material:
-    """Check r, beta, D and q at once; q defaults to that of uniform disks or spheres."""
+    """Return the restitution r, the roughness beta, D and the moment of inertia q, checked.
+
+    q = I/(m a^2) has by default the value of uniform disks or spheres. Raises InputError for an
+    illegal argument.
+    """
     dimension = check_dimension(dimension)
     inertia = moment_of_inertia(dimension) if inertia is None else inertia
     r, beta = check("restitution r", r), check("roughness beta", beta)
@@ -61,16 +73,20 @@ def material(r, beta, dimension=2, inertia=None) -> Material:
 
 
 def check_dimension(dimension: int) -> int:
-    """Check the number of dimensions D, 2 or 3."""
+    """Return the number of dimensions D; raise InputError unless it is 2 or 3."""
     if np.ndim(dimension) or dimension not in (2, 3):
         raise InputError("dimension", dimension, "be 2 or 3")
     return int(dimension)
 
 
 def check(key: str, value: float | np.ndarray, interval: Interval | None = None) -> np.ndarray:
-    """Check numbers that `key` names: whether they lie in `interval`, by default in LEGAL's."""
-    interval = interval or LEGAL.get(key, NOT_NEGATIVE)
-    array, legal = np.asarray(value), IN_WORDS.get(interval, interval.legal)
+    """Return `value`, a number or numbers, as an array of floats; `key` names it in error messages.
+
+    Raises InputError unless all numbers lie in `interval`, by default the interval of `key` in
+    INTERVALS.
+    """
+    interval = interval or INTERVALS.get(key, NOT_NEGATIVE)
+    array, legal = np.asarray(value), LEGAL_IN_WORDS.get(interval, interval.legal)
     if array.dtype.kind not in "iuf":
         raise InputError(key, value, legal)
     array = array.astype(float)
@@ -80,22 +96,26 @@ def check(key: str, value: float | np.ndarray, interval: Interval | None = None)
     return array
 
 
-def shares(first, second, neither) -> tuple[np.ndarray, np.ndarray]:
-    """Return `first` and `second` (both >= 0, broadcast) divided by their sum.
+def shares(first, second, second_if_both_zero) -> tuple[np.ndarray, np.ndarray]:
+    """Return `first` and `second` divided by their sum, two arrays in the broadcast shape.
 
-    Where both vanish, `neither` is the share of the second.
+    Both are >= 0. Where both vanish, the share of the second is `second_if_both_zero`.
     """
     total = first + second
-    some = total > 0
-    divisor = np.where(some, total, 1)
-    return (np.where(some, first / divisor, 1 - neither), np.where(some, second / divisor, neither))
+    positive = total > 0
+    divisor = np.where(positive, total, 1)
+    return (
+        np.where(positive, first / divisor, 1 - second_if_both_zero),
+        np.where(positive, second / divisor, second_if_both_zero),
+    )
 
 
 def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:
     """Return the root x = n/d > 0 of `square` x^2 - `linear` x - `constant` = 0 as the pair (n, d).
 
-    `square` and `constant` are >= 0 and `linear` has any sign. Of the two forms of the root the one
-    that adds numbers of equal sign is taken, so that nothing cancels. (0, 0) where all vanish.
+    `square` and `constant` are >= 0 and `linear` has any sign; all are arrays that broadcast. Of
+    the two forms of the root the one that adds numbers of equal sign is taken, so that nothing
+    cancels. (0, 0) where all vanish.
     """
     sum_of_sizes = np.abs(linear) + np.sqrt(linear**2 + 4 * square * constant)
     numerator = np.where(linear > 0, sum_of_sizes, 2 * constant)
@@ -104,7 +124,10 @@ def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:
 
 
 def quotient(numerator, denominator) -> np.ndarray:
-    """Return `numerator`/`denominator` of numbers >= 0: inf over a vanishing one, 0 for 0/0."""
+    """Return `numerator`/`denominator` of numbers >= 0, in the broadcast shape.
+
+    Infinite where only the denominator vanishes, 0 for 0/0.
+    """
     numerator, denominator = np.broadcast_arrays(numerator, denominator)
     zero = np.zeros(numerator.shape)
     with np.errstate(divide="ignore", over="ignore"):

@@ -1,29 +1,30 @@
 """Mixtures of rough disks or spheres: composition, collision frequencies and rate equations.
 
-Species i has the number fraction x_i, radius a_i, mass m_i, inertia q_i = I_i/(m_i a_i^2), and the
-temperatures T_i = m_i <v^2>/D and tau_i = q_i m_i a_i^2 <omega^2>/(2D-3). A contact of i and j has
-r_ij, beta_ij, mu_ij, the reduced mass m = m_i m_j/(m_i + m_j), and the impulse on i, with g =
-v_i - v_j - (a_i omega_i + a_j omega_j) x n,
+Species i has the number fraction x_i, radius a_i, mass m_i, moment of inertia q_i = I_i/(m_i
+a_i^2), and the temperatures T_i = m_i <v^2>/D of translation and tau_i = q_i m_i a_i^2
+<omega^2>/(2D-3) of rotation, T_tr and T_rot in the code. A contact of i and j has the normal
+restitution r_ij, the roughness beta_ij, the coefficient of friction mu_ij, the reduced mass m = m_i
+m_j/(m_i + m_j), and the impulse on i, with g = v_i - v_j - (a_i omega_i + a_j omega_j) x n,
 
     J = -m (1 + r) g_n - k g_t,    k = (1 + beta)/[1/m + 1/(m_i q_i) + 1/(m_j q_j)],
 
-or k = mu m (1 + r) |g_n|/|g_t| where that is less: the contact slides. With Maxwellian velocities
-that are uncorrelated before contacts, s_i = T_i/m_i, w_i = tau_i/(m_i q_i), and kappa_1 k and
-kappa_2 k^2 the averages of the k that acts (1 and 1 without friction; `friction`), a contact gives
-to i, on average,
+or k = mu m (1 + r) |g_n|/|g_t| if that is less: the contact slides. With Maxwellian velocities that
+are uncorrelated before contacts, s_i = T_i/m_i, w_i = tau_i/(m_i q_i), and kappa_1 k and
+kappa_2 k^2 the averages of k and k^2 with sliding contacts included (`friction.moments`; kappa = 1
+without friction), a contact changes the energies of i by, on average,
 
     D/2 dT_i = -2 m (1+r) s_i + [m (1+r)]^2 (s_i+s_j)/m_i
                + (D-1) [kappa_2 k^2 G/(2 m_i) - kappa_1 k s_i]
     (2D-3)/2 dtau_i = (D-1) [kappa_2 k^2 G/(2 q_i m_i) - kappa_1 k w_i]
 
-with G = s_i + s_j + w_i + w_j, and one particle of i meets those of j
+with G = s_i + s_j + w_i + w_j, and a particle of i has contacts with particles of j at the rate
 
-    nu_ij = S_D n_j chi_ij (a_i + a_j)^(D-1) [(s_i + s_j)/2 pi]^(1/2),    S_D = 2 pi or 4 pi,
+    nu_ij = S_D n_j chi_ij (a_i + a_j)^(D-1) [(s_i + s_j)/2 pi]^(1/2),    S_D = 2 pi or 4 pi.
 
-times per time. That is the approximation of A. Santos, G. M. Kremer & V. Garzo
-(Prog. Theor. Phys. Suppl. 184, 31, 2010) for spheres, of A. Santos (Phys. Rev. E 98, 012904, 2018)
-for disks, and of A. Megias & A. Santos (AIP Conf. Proc. 2132, 080003, 2019) for both. It was
-derived for this package without their formulae at hand; of one species it is `rate_equations`.
+That is the approximation of A. Santos, G. M. Kremer & V. Garzo (Prog. Theor. Phys. Suppl. 184, 31,
+2010) for spheres, of A. Santos (Phys. Rev. E 98, 012904, 2018) for disks, and of A. Megias &
+A. Santos (AIP Conf. Proc. 2132, 080003, 2019) for both. It was derived for this package without
+access to their formulae; for a single species it is `rate_equations`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -31,29 +32,35 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError, Interval, names_of, not_one_of, shown
+from roughgas.base import InputError, Interval, Record, short_repr, unknown_name_error
+from roughgas.base.labels import names_of
 from roughgas.theory.arguments import POSITIVE, check, check_dimension, moment_of_inertia, quotient
 from roughgas.theory.friction import moments
 
-SPECIES = "species_json"
-"""Attribute of datasets of mixtures, from which theory knows them: see `prediction_of_mixtures`."""
+SPECIES_ATTRIBUTE = "species_json"
+"""Attribute of datasets of mixtures that describes their species: see `prediction`."""
 AMOUNTS = "fraction", "number"
 MATERIAL = {"restitution": "restitution r", "roughness": "roughness beta", "mu": "friction mu"}
 KEYS = (*AMOUNTS, "radius", "mass", "inertia", "name", *MATERIAL)
-SUM_OF_FRACTIONS = 1e-6
-"""How far the fractions may be from adding up to 1."""
-NODES = 6
-"""Radii that stand for a distribution: they have its moments up to the eleventh."""
-SEVERAL = "be a list of species, each with a fraction or a number"
-SPREAD = "be a number, a list, or a mapping of distribution (uniform, lognormal, file), deviation"
-WIDEST = {"uniform": Interval("[0, 0.5773]"), "lognormal": Interval("[0, 1)")}
+FRACTIONS_TOLERANCE = 1e-6
+"""Largest deviation of the sum of fractions from 1."""
+QUADRATURE_NODES = 6
+"""Number of radii that represent a distribution: they have its moments up to the eleventh."""
+LEGAL_SPECIES = "be a list of species, each with a fraction or a number"
+LEGAL_RADIUS = (
+    "be a number, a list, or a mapping of distribution (uniform, lognormal, file), deviation"
+)
+LEGAL_DEVIATIONS = {"uniform": Interval("[0, 0.5773]"), "lognormal": Interval("[0, 1)")}
 SHARE = Interval("(0, 1]")
 
 
 class Mixture(NamedTuple):
-    """Species of a gas, arrays (species,), and of their pairs, (species, species).
+    """Properties of the components of a gas, arrays (components,), and of their pairs.
 
-    Species whose radii are spread are several here, which `part_of` numbers as they were given.
+    Radii are in units of a, masses in m, `inertia` is q_i; `restitution`, `roughness` and
+    `friction` have shape (components, components). A species whose radii are spread consists of
+    several components; `species_of` is the index of the species of each component. Elsewhere
+    "species" stands for components as well.
     """
 
     fraction: np.ndarray
@@ -64,148 +71,173 @@ class Mixture(NamedTuple):
     roughness: np.ndarray
     friction: np.ndarray
     dimension: int
-    part_of: np.ndarray
+    species_of: np.ndarray
 
     @property
     def reduced_mass(self) -> np.ndarray:
-        """m_i m_j/(m_i + m_j)."""
+        """Reduced mass of each pair of species, m_i m_j/(m_i + m_j), (species, species)."""
         return 1 / np.add.outer(1 / self.mass, 1 / self.mass)
 
     @property
     def distance(self) -> np.ndarray:
-        """Distance of two particles in contact, a_i + a_j."""
+        """Distance of the centres of two particles in contact, a_i + a_j, (species, species)."""
         return np.add.outer(self.radius, self.radius)
 
     @property
-    def normal(self) -> np.ndarray:
-        """m (1 + r), the normal impulse over the normal speed."""
+    def normal_impulse(self) -> np.ndarray:
+        """Normal impulse over the normal relative velocity, m (1 + r), (species, species)."""
         return self.reduced_mass * (1 + self.restitution)
 
     @property
-    def tangential(self) -> np.ndarray:
-        """Return k, the tangential impulse over the tangential speed of contacts that stick."""
+    def tangential_impulse(self) -> np.ndarray:
+        """Tangential impulse over the slip velocity of sticking contacts, k, (species, species)."""
         ease = 1 / (self.mass * self.inertia)
         return (1 + self.roughness) / (1 / self.reduced_mass + np.add.outer(ease, ease))
 
     @property
-    def spins(self) -> np.ndarray:
-        """Whether contacts ever change the spin of a species."""
-        return np.asarray(((self.tangential > 0) & (self.friction > 0)).any(axis=1))
+    def rotates(self) -> np.ndarray:
+        """Whether contacts ever change the spin of each species, (species,)."""
+        return np.asarray(((self.tangential_impulse > 0) & (self.friction > 0)).any(axis=1))
 
 
 def mixture(species, r, beta, dimension=2, inertia=None, mu=np.inf, pairs=()) -> Mixture:
-    """Return the mixture of some species, given as `species` in config.yaml.
+    """Return the mixture of `species`, which have the format of `species` in config.yaml.
 
-    Each is a mapping with its `fraction` or `number`; `radius`, 1 by default, a list, or a
-    distribution, for which some radii stand; `mass`, by default radius^D; and `inertia`,
-    `restitution`, `roughness` and `mu`, by default those of the other arguments. In a contact of
-    two species r, beta and mu are the means of theirs, unless `pairs` (`species_pairs` in
-    config.yaml) has others.
+    Each species is a mapping with its `fraction` or `number`; `radius`, 1 by default, a list, or a
+    distribution, which is represented by a few radii; `mass`, by default radius^D; and `inertia`,
+    `restitution`, `roughness` and `mu`, which default to the arguments `inertia`, `r`, `beta` and
+    `mu` (coefficient of friction). A contact of two species has the means of their r, beta and mu,
+    unless `pairs` (`species_pairs` in config.yaml) has other values. Raises InputError for illegal
+    species.
     """
     dimension = check_dimension(dimension)
     inertia = moment_of_inertia(dimension) if inertia is None else inertia
     if not isinstance(species, Sequence) or isinstance(species, str) or not species:
-        raise InputError("species", shown(species), SEVERAL)
-    for one in species:
-        _check_keys(one)
-    spread = [_radii(one.get("radius", 1.0)) for one in species]
-    part_of = np.repeat(np.arange(len(species)), [len(radii) for radii, _ in spread])
-    radius, share = (np.concatenate(column) for column in zip(*spread, strict=True))
-    own = _each(species, "mass", "species.mass", radius[0], POSITIVE)[part_of]
-    heavy = np.array(["mass" in one for one in species])[part_of]
-    given = {"restitution": r, "roughness": beta, "mu": mu}
-    tables = {key: pair_means(_each(species, key, MATERIAL[key], x)) for key, x in given.items()}
-    _put_pairs(tables, pairs, species)
+        raise InputError("species", short_repr(species), LEGAL_SPECIES)
+    for entry in species:
+        _check_species(entry)
+    radii_and_shares = [_radii_and_shares(entry.get("radius", 1.0)) for entry in species]
+    species_of = np.repeat(np.arange(len(species)), [len(radii) for radii, _ in radii_and_shares])
+    radius, radius_share = (
+        np.concatenate(column) for column in zip(*radii_and_shares, strict=True)
+    )
+    given_masses = _column(species, "mass", "species.mass", radius[0], POSITIVE)[species_of]
+    mass_given = np.array(["mass" in entry for entry in species])[species_of]
+    defaults = {"restitution": r, "roughness": beta, "mu": mu}
+    tables = {
+        key: pair_means(_column(species, key, MATERIAL[key], x)) for key, x in defaults.items()
+    }
+    _override_pairs(tables, pairs, species)
     restitution, roughness, friction = (
-        table[np.ix_(part_of, part_of)] for table in tables.values()
+        table[np.ix_(species_of, species_of)] for table in tables.values()
     )
     return Mixture(
-        _fractions(species)[part_of] * share,
+        _fractions(species)[species_of] * radius_share,
         radius,
-        np.where(heavy, own, radius**dimension),
-        _each(species, "inertia", "inertia q", inertia)[part_of],
+        np.where(mass_given, given_masses, radius**dimension),
+        _column(species, "inertia", "inertia q", inertia)[species_of],
         restitution,
         roughness,
         friction,
         dimension,
-        part_of,
+        species_of,
     )
 
 
 def pair_means(values: np.ndarray) -> np.ndarray:
-    """Return what a contact of two species has, (species, species): the mean of their values."""
+    """Return the mean (values[i] + values[j])/2 of each pair of species, (species, species).
+
+    `values` has a quantity of each species, (species,).
+    """
     return np.add.outer(values, values) / 2
 
 
-def _each(species, key: str, label: str, default: Any, legal: Interval | None = None) -> np.ndarray:
-    """Return what each species has of a quantity, (species,), checked."""
-    return np.array([float(check(label, one.get(key, default), legal)) for one in species])
+def _column(
+    species, key: str, argument: str, default: Any, legal: Interval | None = None
+) -> np.ndarray:
+    """Return the quantity `key` of each species, (species,), checked.
+
+    `default` is its value where a species lacks it, `argument` its name in error messages, `legal`
+    the legal interval.
+    """
+    return np.array([float(check(argument, entry.get(key, default), legal)) for entry in species])
 
 
-def _radii(given: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return radii, and the shares of the species' particles that have them."""
-    if not isinstance(given, Mapping):
-        found = np.sort(np.atleast_1d(check("species.radius", given, POSITIVE)))
-        few = len(np.unique(found)) <= 2 * NODES
-        radii, counts = np.unique(found if few else _grouped(found), return_counts=True)
-        return radii, counts / len(found)
-    kind = given.get("distribution")
-    if kind == "file" and "file" in given:
-        return _radii(np.loadtxt(given["file"], ndmin=1))
-    if kind not in WIDEST or "deviation" not in given:
-        raise InputError("species.radius", shown(given), SPREAD)
-    mean = float(check("species.radius.mean", given.get("mean", 1.0), POSITIVE))
-    deviation = float(check("species.radius.deviation", given["deviation"], WIDEST[kind]))
+def _radii_and_shares(setting: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return radii of a species, and the share of its particles with each radius, (radii,) each.
+
+    `setting` is the `radius` of a species: a number, numbers, or a mapping with a `distribution`.
+    """
+    if not isinstance(setting, Mapping):
+        values = np.sort(np.atleast_1d(check("species.radius", setting, POSITIVE)))
+        all_fit = len(np.unique(values)) <= 2 * QUADRATURE_NODES
+        radii, counts = np.unique(values if all_fit else _group_means(values), return_counts=True)
+        return radii, counts / len(values)
+    distribution = setting.get("distribution")
+    if distribution == "file" and "file" in setting:
+        return _radii_and_shares(np.loadtxt(setting["file"], ndmin=1))
+    if distribution not in LEGAL_DEVIATIONS or "deviation" not in setting:
+        raise InputError("species.radius", short_repr(setting), LEGAL_RADIUS)
+    mean = float(check("species.radius.mean", setting.get("mean", 1.0), POSITIVE))
+    deviation = float(
+        check("species.radius.deviation", setting["deviation"], LEGAL_DEVIATIONS[distribution])
+    )
     if deviation == 0:
         return np.array([mean]), np.ones(1)
-    if kind == "uniform":
-        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    if distribution == "uniform":
+        nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE_NODES)
         return mean * (1 + np.sqrt(3) * deviation * nodes), weights / 2
     width = np.sqrt(np.log1p(deviation**2))
-    nodes, weights = np.polynomial.hermite_e.hermegauss(NODES)
+    nodes, weights = np.polynomial.hermite_e.hermegauss(QUADRATURE_NODES)
     return mean * np.exp(width * nodes - width**2 / 2), weights / weights.sum()
 
 
-def _grouped(radii: np.ndarray) -> np.ndarray:
-    """Return sorted radii, each replaced by the mean of some neighbours: few values in all."""
-    groups = np.array_split(radii, 2 * NODES)
+def _group_means(radii: np.ndarray) -> np.ndarray:
+    """Return sorted `radii`, each replaced by the mean of its group of neighbours, (radii,)."""
+    groups = np.array_split(radii, 2 * QUADRATURE_NODES)
     return np.concatenate([np.full(len(group), group.mean()) for group in groups])
 
 
-def _put_pairs(tables: Mapping[str, np.ndarray], pairs, species) -> None:
-    """Put into the tables what contacts of two species have in place of the means."""
-    names = names_of({"species": species})
-    for one in pairs:
-        places = [str(name) for name in one["between"]]
-        for name in places:
+def _override_pairs(tables: Mapping[str, np.ndarray], pairs, species) -> None:
+    """Replace means in `tables` by the values that `pairs` has for contacts of two species.
+
+    `tables` has a matrix (species, species) of r, beta and mu by name; it is changed.
+    """
+    names = names_of(species)
+    for pair in pairs:
+        pair_names = [str(name) for name in pair["between"]]
+        for name in pair_names:
             if name not in names:
-                raise not_one_of("species_pairs.between", name, names)
-        k, other = map(names.index, places)
+                raise unknown_name_error("species_pairs.between", name, names)
+        first, second = map(names.index, pair_names)
         for key, table in tables.items():
-            if key in one:
-                table[k, other] = table[other, k] = check(MATERIAL[key], one[key])
+            if key in pair:
+                table[first, second] = table[second, first] = check(MATERIAL[key], pair[key])
 
 
-def _check_keys(one: Any) -> None:
-    if not isinstance(one, Mapping):
-        raise InputError("species", one, SEVERAL)
-    for key in one:
+def _check_species(entry: Any) -> None:
+    """Raise InputError unless `entry`, a species in settings, is a mapping with legal keys."""
+    if not isinstance(entry, Mapping):
+        raise InputError("species", entry, LEGAL_SPECIES)
+    for key in entry:
         if key not in KEYS:
-            raise not_one_of("species", key, KEYS)
-    if sum(key in one for key in AMOUNTS) != 1:
-        raise InputError("species", dict(one), "have either fraction or number")
+            raise unknown_name_error("species", key, KEYS)
+    if sum(key in entry for key in AMOUNTS) != 1:
+        raise InputError("species", dict(entry), "have either fraction or number")
 
 
-def _fractions(species: Sequence[Mapping[str, Any]]) -> np.ndarray:
-    """Return x_i, from fractions that add up to 1 or from numbers."""
-    kinds = {key for one in species for key in AMOUNTS if key in one}
-    if len(kinds) > 1:
+def _fractions(species: Sequence[Record]) -> np.ndarray:
+    """Return number fractions x_i (species,), from fractions that add up to 1 or from numbers."""
+    keys = {key for entry in species for key in AMOUNTS if key in entry}
+    if len(keys) > 1:
         raise InputError("species", "fraction and number", "have one of them throughout")
-    kind = kinds.pop()
-    legal = Interval("(0, 1]") if kind == "fraction" else Interval("(0, inf)")
-    amounts = np.array([float(check(f"species.{kind}", one[kind], legal)) for one in species])
+    amount_key = keys.pop()
+    legal = Interval("(0, 1]") if amount_key == "fraction" else Interval("(0, inf)")
+    amounts = np.array(
+        [float(check(f"species.{amount_key}", entry[amount_key], legal)) for entry in species]
+    )
     total = amounts.sum()
-    if kind == "fraction" and abs(total - 1) > SUM_OF_FRACTIONS:
+    if amount_key == "fraction" and abs(total - 1) > FRACTIONS_TOLERANCE:
         raise InputError("species.fraction", f"{total:g} in all", "add up to 1")
     return amounts / total
 
@@ -215,72 +247,90 @@ SURFACE = {2: 2 * np.pi, 3: 4 * np.pi}
 
 
 class Temperatures(NamedTuple):
-    """Temperatures T_tr and T_rot of each species, arrays (species,)."""
+    """Temperatures of translation and rotation of each species, arrays (species,)."""
 
     T_tr: np.ndarray
     T_rot: np.ndarray
 
     @property
     def R(self) -> np.ndarray:
-        """R = T_rot/(T_rot + T_tr) of each species."""
+        """Share of rotational energy of each species, R = T_rot/(T_rot + T_tr), (species,)."""
         return self.T_rot / (self.T_rot + self.T_tr)
 
-    def as_given(self, gas: Mixture) -> "Temperatures":
-        """Return those of the species as they were given, means over their radii."""
-        total = np.bincount(gas.part_of, gas.fraction)
-        return Temperatures(*(np.bincount(gas.part_of, gas.fraction * T) / total for T in self))
+    def averaged_over_radii(self, gas: Mixture) -> "Temperatures":
+        """Return the temperatures of the species in settings, means over the radii of each.
+
+        `gas` is the mixture whose components have these temperatures.
+        """
+        total = np.bincount(gas.species_of, gas.fraction)
+        return Temperatures(*(np.bincount(gas.species_of, gas.fraction * T) / total for T in self))
 
     def overall_ratio(self, gas: Mixture) -> float:
-        """Return R of the gas: of its energies per particle and degree of freedom."""
+        """Return R of the whole `gas`, the rotational share of energy per degree of freedom."""
         translational, rotational = (gas.fraction @ T for T in self)
         return rotational / (rotational + translational)
 
 
 def contact_frequencies(gas: Mixture, T_tr, crowding=1.0) -> np.ndarray:
-    """Return nu_ij per time and number density: contacts of a particle of i with those of j.
+    """Return nu_ij over the number density, (species, species), in a^D/T.
 
-    `crowding` is chi_ij, from `mixture_contact_values`; 1 in a dilute gas.
+    nu_ij is the number of contacts of a particle of species i with particles of j per time. `T_tr`
+    has the translational temperatures (species,). `crowding` is chi_ij, from
+    `mixture_contact_values`; 1 in a dilute gas.
     """
-    speed = _of_pairs(T_tr / gas.mass)
+    speed = _pair_sums(T_tr / gas.mass)
     area = SURFACE[gas.dimension] * gas.distance ** (gas.dimension - 1)
     return gas.fraction * crowding * area * np.sqrt(speed / (2 * np.pi))
 
 
 def rate_matrix(gas: Mixture, T_tr, T_rot, crowding=1.0) -> np.ndarray:
-    """Return A, (2 species, 2 species): d(T_tr, T_rot)/dt = A (T_tr, T_rot).
+    """Return A, (2 species, 2 species), of the rate equations d(T_tr, T_rot)/dt = A (T_tr, T_rot).
 
-    Temperatures may have more axes before that of the species. Per time and number density, as
-    `contact_frequencies`. It depends on the temperatures through
-    frequencies and, with friction, through the share of contacts that slide. All that is off its
-    diagonal is >= 0.
+    `T_tr` and `T_rot` have shape (..., species), A (..., 2 species, 2 species). Per time and number
+    density, and with the same `crowding`, as `contact_frequencies`. A depends on the temperatures
+    through frequencies and, with friction, through the share of sliding contacts. Its off-diagonal
+    elements are >= 0.
     """
     D, size = gas.dimension, len(gas.mass)
-    first, second = _sliding(gas, T_tr, T_rot)
+    first_moment, second_moment = _friction_moments(gas, T_tr, T_rot)
     nu = contact_frequencies(gas, T_tr, crowding)
-    m, turned = gas.mass[:, None], (gas.mass * gas.inertia)[:, None]
-    push, drag = gas.normal, (D - 1) * second * gas.tangential**2 / 2
-    lost, eye = (D - 1) * first * gas.tangential, np.eye(size)
+    mass, spin_mass = gas.mass[:, None], (gas.mass * gas.inertia)[:, None]
+    normal_impulse, tangential_gain = (
+        gas.normal_impulse,
+        (D - 1) * second_moment * gas.tangential_impulse**2 / 2,
+    )
+    tangential_loss, identity = (D - 1) * first_moment * gas.tangential_impulse, np.eye(size)
 
-    def part(from_all: np.ndarray, own: np.ndarray, other: np.ndarray, spins: int) -> np.ndarray:
-        """Return what squared velocities bring: of both partners, and of the particle itself."""
-        both = nu * from_all
-        total = both + eye * (both - nu * own).sum(axis=-1)[..., None]
-        return 2 * total / (spins * other)
+    def block(
+        pair_gain: np.ndarray, own_loss: np.ndarray, source_mass: np.ndarray, degrees: int
+    ) -> np.ndarray:
+        """Return a block of A: gains from both partners, less the loss of the particle itself.
 
-    into_velocity, into_spin = drag / m, drag / turned
-    nothing = np.zeros((size, size))
-    velocity = part(push**2 / m + into_velocity, 2 * push + lost, gas.mass, D)
-    from_spin = part(into_velocity, nothing, gas.mass * gas.inertia, D)
-    to_spin = part(into_spin, nothing, gas.mass, 2 * D - 3)
-    spin = part(into_spin, lost, gas.mass * gas.inertia, 2 * D - 3)
+        `pair_gain` and `own_loss` are energies per contact over s or w (module), (species, species)
+        or broadcast; `source_mass` the mass or spin mass of the source of energy, `degrees` the
+        degrees of freedom of the energy that changes.
+        """
+        from_partner = nu * pair_gain
+        total = from_partner + identity * (from_partner - nu * own_loss).sum(axis=-1)[..., None]
+        return 2 * total / (degrees * source_mass)
+
+    into_velocity, into_spin = tangential_gain / mass, tangential_gain / spin_mass
+    zeros = np.zeros((size, size))
+    velocity = block(
+        normal_impulse**2 / mass + into_velocity, 2 * normal_impulse + tangential_loss, gas.mass, D
+    )
+    from_spin = block(into_velocity, zeros, gas.mass * gas.inertia, D)
+    to_spin = block(into_spin, zeros, gas.mass, 2 * D - 3)
+    spin = block(into_spin, tangential_loss, gas.mass * gas.inertia, 2 * D - 3)
     rows = [np.concatenate(pair, -1) for pair in ((velocity, from_spin), (to_spin, spin))]
     return np.concatenate(rows, -2)
 
 
 def mixture_changes(gas: Mixture, T_tr, T_rot, crowding=1.0, density=1.0) -> Temperatures:
-    """Return dT_tr/dt and dT_rot/dt of each species due to collisions.
+    """Return dT_tr/dt and dT_rot/dt of each species due to collisions, in m a^2/T^3.
 
-    `density` is the number of particles per a^D, `crowding` as for `contact_frequencies`.
+    `T_tr` and `T_rot` have shape (species,); `density` is the number of particles per a^D,
+    `crowding` chi_ij as for `contact_frequencies`.
     """
     T_tr, T_rot = check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)
     matrix = rate_matrix(gas, T_tr, T_rot, crowding)
@@ -288,14 +338,20 @@ def mixture_changes(gas: Mixture, T_tr, T_rot, crowding=1.0, density=1.0) -> Tem
     return Temperatures(*np.split(change, 2))
 
 
-def _of_pairs(values: np.ndarray) -> np.ndarray:
-    """Return x_i + x_j, (..., species, species), of x (..., species)."""
+def _pair_sums(values: np.ndarray) -> np.ndarray:
+    """Return x_i + x_j, (..., species, species), of `values` x (..., species)."""
     return values[..., :, None] + values[..., None, :]
 
 
-def _sliding(gas: Mixture, T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
-    """Return kappa_1 and kappa_2 of each pair."""
+def _friction_moments(gas: Mixture, T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
+    """Return kappa_1 and kappa_2 of each pair, (..., species, species), averages of the module's k.
+
+    They are the means of the tangential impulse and of its square over the means that sticking
+    contacts have.
+    """
     velocity, spin = T_tr / gas.mass, T_rot / (gas.mass * gas.inertia)
-    speed = _of_pairs(velocity)
-    slip = np.sqrt(quotient(speed + _of_pairs(spin), speed))
-    return moments(quotient(gas.tangential, gas.friction * gas.normal) * slip, gas.dimension)
+    speed = _pair_sums(velocity)
+    slip = np.sqrt(quotient(speed + _pair_sums(spin), speed))
+    return moments(
+        quotient(gas.tangential_impulse, gas.friction * gas.normal_impulse) * slip, gas.dimension
+    )

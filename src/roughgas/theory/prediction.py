@@ -1,8 +1,11 @@
-"""What theory predicts for a dataset: which equation it obeys, and what that says of R.
+"""Predictions of theory for a dataset: the equation that it obeys, and R by this equation.
 
-Of a mixture, `species_json` among its attributes holds `species` and `species_pairs`, as in
-config.yaml, and the `volume` of a periodic box. Where a quantity of a species is swept, its values
-stand among the attributes under its name.
+R = T_rot/(T_rot + T_tr) is the share of rotational energy, r the normal restitution, beta the
+roughness, `inertia` q = I/(m a^2).
+
+The attribute `species_json` of a mixture holds `species` and `species_pairs`, as in config.yaml,
+and the `volume` of a periodic box. The values of a swept quantity of a species are an attribute
+with the name of the quantity.
 """
 
 import json
@@ -12,40 +15,45 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import SPECIES as OF_SPECIES
-from roughgas.base import holder
+from roughgas.base import Attributes
+from roughgas.base.labels import SPECIES_PREFIX as SPECIES_KEY
+from roughgas.base.labels import species_settings
 from roughgas.theory import mixture_states
 from roughgas.theory.closed_forms import VOLUME
 from roughgas.theory.friction import friction_ratio
-from roughgas.theory.mixtures import SPECIES, Mixture, Temperatures, mixture
-from roughgas.theory.rate_equations import LANGEVIN, bath_temperatures, stationary_ratio
+from roughgas.theory.mixtures import SPECIES_ATTRIBUTE, Mixture, Temperatures, mixture
+from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE, bath_temperatures, stationary_ratio
 
-BESIDE = (SPECIES, "mu", "spin_share")
-"""Attributes of a gas that is more than a bath of rough particles."""
+OUTSIDE_BATH_THEORY = (SPECIES_ATTRIBUTE, "mu", "spin_share")
+"""Attributes of gases with species, friction or a thermostat, which the theory of a bath lacks."""
 
 
 class Equation(NamedTuple):
-    """What R of a gas is compared with."""
+    """The equation of theory that R, the share of rotational energy, is compared with."""
 
     kind: str  # "K" for a freely cooling gas, "lun" for a driven one: the attribute `theory`
     name: str  # "theory of free cooling", "rate equations with Coulomb friction"...
 
 
-def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -> Equation:
-    """Return the equation that a point or a reduced dataset obeys.
+def equation_of(attributes: Attributes, variables: Container[Any] = ()) -> Equation:
+    """Return the equation that a dataset of a point, or a reduced dataset, obeys.
 
-    A point has no attribute `theory`: there, `variables` tell whether R has a plateau that ends,
-    as in a cooling gas. A parameter that is swept, and so is no attribute, has no single value.
+    `attributes` and `variables` are the attributes and the names of the variables of the dataset. A
+    point has no attribute `theory`: a cooling gas is recognised by the variable `plateau_end`. A
+    swept parameter has no single value, and is not an attribute.
     """
     kind = attributes.get("theory", "K" if "plateau_end" in variables else "lun")
     swept = attributes.get("swept", "").rpartition(".")[2]
-    if LANGEVIN in attributes:
+    if LANGEVIN_ATTRIBUTE in attributes:
         return Equation(kind, "rate equations in a Langevin bath")
-    if SPECIES in attributes and kind == "K":
+    if SPECIES_ATTRIBUTE in attributes and kind == "K":
         return Equation(kind, "theory of free cooling of mixtures")
-    if SPECIES in attributes:
-        kicked, other = "rate equations of mixtures", "Lun's formula for mixtures, equal T_trans"
-        return Equation(kind, kicked if "spin_share" in attributes else other)
+    if SPECIES_ATTRIBUTE in attributes:
+        thermostat_name, general_name = (
+            "rate equations of mixtures",
+            "Lun's formula for mixtures, equal T_trans",
+        )
+        return Equation(kind, thermostat_name if "spin_share" in attributes else general_name)
     if "mu" in attributes or swept == "mu":
         return Equation(kind, "rate equations with Coulomb friction")
     if kind == "K":
@@ -56,166 +64,203 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     return Equation(kind, f"rate equations, spin share {share:g}" if share else "Lun's formula")
 
 
-def like_theory(variables: Container[Any]) -> bool:
-    """Return whether the average over collisions is that of theory, in what has these `variables`.
+def theory_averages_over_collisions(variables: Container[Any]) -> bool:
+    """Return whether R of theory corresponds to R averaged over collisions.
 
-    Theory of a driven gas balances what collisions change, so its R is an average over collisions
-    (McNamara & Luding 1998, below Eq. (Energybalance)). Contacts of a sheared gas feel its mean
-    flow and mean spin, which theory leaves out; there it is R over time that leaves them out, too.
+    `variables` are the names of the variables of a dataset. Theory of a driven gas balances the
+    changes by collisions, so its R is an average over collisions (McNamara & Luding 1998, below Eq.
+    (Energybalance)). Contacts of a sheared gas depend on its mean flow and mean spin, which theory
+    omits; the average of R over time omits them, too.
     """
     return "R_unsubtracted" not in variables
 
 
-def over_collisions(attributes: Mapping[str, Any], variables: Container[Any] = ()) -> str:
-    """Return what R averaged over collisions is to the equation of `equation_of`, in words."""
+def describe_collisional_average(attributes: Attributes, variables: Container[Any] = ()) -> str:
+    """Return in words how R averaged over collisions relates to the equation of `equation_of`.
+
+    Arguments as in `equation_of`.
+    """
     name = equation_of(attributes, variables).name
-    if like_theory(variables):
+    if theory_averages_over_collisions(variables):
         return f"as {name}"
     return f"mean flow included, unlike {name}"
 
 
-def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins, for a
-    gas through `stages`, and for a cooling gas at beta = -1: contacts leave spins alone there, and
-    R has no stationary value.
+def predicted_ratio(attributes: Attributes, r: Any, beta: Any) -> np.ndarray:
+    """Return R of theory, the share of rotational energy, in the shape of its arguments.
 
-    That is the theory of free cooling for a gas without a drive, Lun's formula for one whose drive
-    adds translation only, and the result of the rate equations for other drives, and for friction.
-    `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
-    `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`. Mixtures have
-    `species_json`, a Langevin bath `langevin_json`, and theories of their own.
+    R is computed by the theory of free cooling for a gas without a drive, Lun's formula for a drive
+    that adds translational energy only, and the rate equations for other drives, and for friction.
+    `attributes` are the attributes of a reduced dataset, with its third axis: `inertia`,
+    `spin_share` (of the drive), or `mu` (coefficient of friction); these broadcast with `r` and
+    `beta`. Mixtures, which have `species_json`, are treated by `ratio_of_mixture`, Langevin baths,
+    which have `langevin_json`, by `ratio_in_bath`.
+
+    NaN where nothing spins, for a gas through `stages`, and for a cooling gas at beta = -1, where
+    contacts do not change spins, and R has no stationary value.
     """
     if "stages" in attributes:
         return np.full(np.broadcast_shapes(np.shape(r), np.shape(beta)), math.nan)
-    if LANGEVIN in attributes:
+    if LANGEVIN_ATTRIBUTE in attributes:
         return ratio_in_bath(attributes, r, beta)
-    if SPECIES in attributes:
+    if SPECIES_ATTRIBUTE in attributes:
         return ratio_of_mixture(attributes, r, beta)
-    names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}
-    given = (attributes.get(name, value) for name, value in names.items())
-    r, beta, q, share, mu = np.broadcast_arrays(*(np.asarray(x, float) for x in (r, beta, *given)))
+    defaults = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}
+    parameters = (attributes.get(name, value) for name, value in defaults.items())
+    r, beta, q, share, mu = np.broadcast_arrays(
+        *(np.asarray(x, float) for x in (r, beta, *parameters))
+    )
     if np.isnan(q).any():
         return np.full(r.shape, math.nan)
     dimension, driven = int(attributes["dimension"]), attributes["theory"] != "K"
-    of_drive = share if driven else None
+    spin_share = share if driven else None
     if np.isfinite(mu).any():
-        found = friction_ratio(r, beta, mu, dimension, q, of_drive)
+        predicted = friction_ratio(r, beta, mu, dimension, q, spin_share)
     else:
-        found = stationary_ratio(r, beta, dimension, q, of_drive)
-    return np.where((beta == -1.0) & (not driven), math.nan, found)
+        predicted = stationary_ratio(r, beta, dimension, q, spin_share)
+    return np.where((beta == -1.0) & (not driven), math.nan, predicted)
 
 
-def ratio_in_bath(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """Return R of theory in the bath of a dataset, over the broadcast shape of its arguments; NaN
-    where the packing is not known, nothing spins, or the bath gives nothing, and for what these
-    rate equations leave out: several species, friction, a thermostat beside the bath.
+def ratio_in_bath(attributes: Attributes, r: Any, beta: Any) -> np.ndarray:
+    """Return R of theory, the share of rotational energy, in the Langevin bath of a dataset.
 
-    A swept parameter of the bath stands among the attributes, as the inertia does.
+    It has the broadcast shape of `r` and `beta`. `attributes` are the attributes of the dataset;
+    its settings of the bath are in `langevin_json`. NaN where the packing is unknown, nothing
+    spins, or the bath supplies no energy, and for gases outside of these rate equations: with
+    several species, friction, or a thermostat. A swept parameter of the bath is among the
+    attributes, as is the inertia.
     """
     r, beta = np.broadcast_arrays(r, beta)
-    if any(name in attributes for name in BESIDE):
+    if any(name in attributes for name in OUTSIDE_BATH_THEORY):
         return np.full(r.shape, np.nan)
-    settings = json.loads(attributes[LANGEVIN])
-    part, _, swept = attributes.get("swept", "").rpartition(".")
+    settings = json.loads(attributes[LANGEVIN_ATTRIBUTE])
+    section, _, swept = attributes.get("swept", "").rpartition(".")
     names = {"inertia", "packing", *(settings.keys() - {"interval"})}
-    given = {name: settings.get(name, attributes.get(name, np.nan)) for name in names}
-    if part == "langevin" and swept in given:
-        given[swept] = attributes.get(swept, np.nan)
-    if not all(np.isfinite(value).all() for value in given.values()):
+    parameters = {name: settings.get(name, attributes.get(name, np.nan)) for name in names}
+    if section == "langevin" and swept in parameters:
+        parameters[swept] = attributes.get(swept, np.nan)
+    if not all(np.isfinite(value).all() for value in parameters.values()):
         return np.full(r.shape, np.nan)
-    T_tr, T_rot = bath_temperatures(r, beta, dimension=int(attributes["dimension"]), **given)
+    T_tr, T_rot = bath_temperatures(r, beta, dimension=int(attributes["dimension"]), **parameters)
     with np.errstate(invalid="ignore"):
         return np.asarray(T_rot / (T_tr + T_rot))
 
 
 def ratio_of_point(point: Any) -> float:
-    """Return R of theory for a point (a Dataset); NaN where there is none.
+    """Return R of theory, the share of rotational energy, for a point; NaN without a theory.
 
-    Where a quantity of a species is swept, it is the value that counts.
+    `point` is its dataset. A swept quantity of a species has its value at this point, not the value
+    of the experiment.
     """
-    about = point.attrs | {"theory": equation_of(point.attrs, point).kind}
-    if not isinstance(value := about.get("swept_value", ""), str):
-        about[about["swept"].rpartition(".")[2]] = value
-    return float(predicted_ratio(about, about["r"], about["beta"]))
+    attributes = point.attrs | {"theory": equation_of(point.attrs, point).kind}
+    if not isinstance(swept_value := attributes.get("swept_value", ""), str):
+        attributes[attributes["swept"].rpartition(".")[2]] = swept_value
+    return float(predicted_ratio(attributes, attributes["r"], attributes["beta"]))
 
 
-SMOOTH = -1 + 1e-7
-"""Roughness that stands for the limit beta -> -1 of a cooling gas: see `cooling_ratio`."""
-FINE = 121
-"""Values along a line from which on theory is computed at some, and interpolated between them."""
+NEARLY_SMOOTH = -1 + 1e-7
+"""Roughness that represents the limit beta -> -1 of a cooling gas: see `cooling_ratio`."""
+INTERPOLATION_NODES = 121
+"""Theory is computed at no more values than these along a line, and interpolated between them."""
 
 
-def ratio_of_mixture(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """Return R of all particles over the broadcast shape of the arguments, as `predicted_ratio`.
+def ratio_of_mixture(attributes: Attributes, r: Any, beta: Any) -> np.ndarray:
+    """Return R of theory, the share of rotational energy, of all particles of a mixture.
 
-    Without a drive it is that of `mixture_cooling`, with the thermostat that of `mixture_driven`.
-    Another drive leaves open how species share the energy of translation: then it is that of
-    `mixture_rotation` with equal temperatures.
+    It has the broadcast shape of the arguments. `attributes` are the attributes of a dataset: its
+    species in `species_json`, and `inertia`, `spin_share` (of the drive), `mu` or the swept
+    quantity, which broadcast with `r` and `beta`. R is computed by `mixture_cooling` without a
+    drive, by `mixture_driven` with the thermostat. Other drives do not determine how species share
+    the translational energy: then by `mixture_rotation` with equal temperatures T_tr. A long line
+    of values is interpolated between INTERPOLATION_NODES of them.
     """
     swept = attributes.get("swept", "").rpartition(".")[2]
-    names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf} | {swept: math.nan}
-    given = [np.asarray(attributes.get(name, value), float) for name, value in names.items()]
-    places = np.broadcast_arrays(r, beta, *given)
-    columns = [np.asarray(place, float).ravel() for place in places]
-    moving = [column for column in columns if len(set(column.tolist())) > 1]
+    defaults = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf} | {swept: math.nan}
+    parameters = [
+        np.asarray(attributes.get(name, value), float) for name, value in defaults.items()
+    ]
+    broadcast = np.broadcast_arrays(r, beta, *parameters)
+    columns = [np.asarray(values, float).ravel() for values in broadcast]
+    varying = [column for column in columns if len(set(column.tolist())) > 1]
 
-    def at(index: int) -> float:
-        place = dict(zip(("r", "beta", *names), (column[index] for column in columns), strict=True))
-        return _ratio(attributes, place, swept)
+    def ratio_at(index: int) -> float:
+        """Return R at the parameters with this `index` in the flattened arguments."""
+        parameter_values = dict(
+            zip(("r", "beta", *defaults), (column[index] for column in columns), strict=True)
+        )
+        return _mixture_ratio(attributes, parameter_values, swept)
 
     size = columns[0].size
-    if size <= FINE or len(moving) > 1:
-        return np.reshape([at(k) for k in range(size)], places[0].shape)
-    some = np.unique(np.linspace(0, size - 1, FINE).round().astype(int))
-    found = np.interp(np.arange(size), some, [at(k) for k in some])
-    return np.reshape(found, places[0].shape)
+    if size <= INTERPOLATION_NODES or len(varying) > 1:
+        return np.reshape([ratio_at(k) for k in range(size)], broadcast[0].shape)
+    sampled = np.unique(np.linspace(0, size - 1, INTERPOLATION_NODES).round().astype(int))
+    interpolated = np.interp(np.arange(size), sampled, [ratio_at(k) for k in sampled])
+    return np.reshape(interpolated, broadcast[0].shape)
 
 
-def species_at(
-    attributes: Mapping[str, Any], place: Mapping[str, float], T_tr=None
-) -> Temperatures:
-    """Return what theory says of the species of a dataset at one place (see `mixture_at`).
+def species_at(attributes: Attributes, parameters: Mapping[str, float], T_tr=None) -> Temperatures:
+    """Return the temperatures of the species of a dataset by theory, arrays (species,).
 
-    Of a cooling gas, their temperatures. Of a driven one, T_rot by `mixture_rotation` from their
-    measured `T_tr`, (species,).
+    `attributes` are the attributes of the dataset, `parameters` as in `mixture_at`. For a driven
+    gas, T_tr is the measured `T_tr`, (species,), and T_rot follows from it by `mixture_rotation`; a
+    cooling gas has both from `mixture_cooling`.
     """
-    gas, packing = mixture_at(attributes, place)
+    gas, packing = mixture_at(attributes, parameters)
     if attributes["theory"] == "K":
-        return mixture_states.mixture_cooling(gas, packing).as_given(gas)
-    measured = np.asarray(T_tr)[gas.part_of]
-    return Temperatures(measured, mixture_states.mixture_rotation(gas, measured, packing)).as_given(
-        gas
+        return mixture_states.mixture_cooling(gas, packing).averaged_over_radii(gas)
+    measured = np.asarray(T_tr)[gas.species_of]
+    return Temperatures(
+        measured, mixture_states.mixture_rotation(gas, measured, packing)
+    ).averaged_over_radii(gas)
+
+
+def mixture_at(attributes: Attributes, parameters: Mapping[str, float]) -> tuple[Mixture, float]:
+    """Return the mixture of a dataset, and its packing fraction; 0 if the box is open.
+
+    `attributes` are the attributes of the dataset; `parameters` has r, beta and the swept quantity
+    by name.
+    """
+    description = json.loads(attributes[SPECIES_ATTRIBUTE])
+    holder_path, _, key = attributes.get("swept", "").rpartition(".")
+    swept_holder = (
+        species_settings(description["species"], holder_path, key)
+        if holder_path.startswith(SPECIES_KEY)
+        else None
     )
-
-
-def mixture_at(attributes: Mapping[str, Any], place: Mapping[str, float]) -> tuple[Mixture, float]:
-    """Return the mixture of a dataset, and its packing (0 where the box is open), at one place: r,
-    beta, and what is swept, by name."""
-    known = json.loads(attributes[SPECIES])
-    part, _, key = attributes.get("swept", "").rpartition(".")
-    if part.startswith(OF_SPECIES) and (changed := holder(known, part, key)) is not None:
-        changed[key] = float(place[key])
-    q, mu = (place.get(name, attributes.get(name)) for name in ("inertia", "mu"))
+    if swept_holder is not None:
+        swept_holder[key] = float(parameters[key])
+    q, mu = (parameters.get(name, attributes.get(name)) for name in ("inertia", "mu"))
     q = None if q is None or math.isnan(q) else q
-    about = int(attributes["dimension"]), q, math.inf if mu is None else mu
-    gas = mixture(known["species"], place["r"], place["beta"], *about, known["species_pairs"])
-    if not known["volume"]:
+    gas_settings = int(attributes["dimension"]), q, math.inf if mu is None else mu
+    gas = mixture(
+        description["species"],
+        parameters["r"],
+        parameters["beta"],
+        *gas_settings,
+        description["species_pairs"],
+    )
+    if not description["volume"]:
         return gas, 0.0
-    filled = VOLUME[gas.dimension] * float(gas.fraction @ gas.radius**gas.dimension)
-    return gas, int(attributes["particles"]) * filled / known["volume"]
+    mean_volume = VOLUME[gas.dimension] * float(gas.fraction @ gas.radius**gas.dimension)
+    return gas, int(attributes["particles"]) * mean_volume / description["volume"]
 
 
-def _ratio(attributes: Mapping[str, Any], place: Mapping[str, float], swept: str) -> float:
+def _mixture_ratio(attributes: Attributes, parameters: Mapping[str, float], swept: str) -> float:
+    """Return R of theory of all particles of a mixture at the given `parameters` (`mixture_at`).
+
+    `attributes` are the attributes of the dataset, `swept` is the name of the swept quantity,
+    without its section.
+    """
     cools = attributes["theory"] == "K"
-    rough = {"beta": max(place["beta"], SMOOTH)} if cools else {}
-    gas, packing = mixture_at(attributes, {**place, **rough})
+    above_smooth = {"beta": max(parameters["beta"], NEARLY_SMOOTH)} if cools else {}
+    gas, packing = mixture_at(attributes, {**parameters, **above_smooth})
     if cools:
         return mixture_states.mixture_cooling(gas, packing).overall_ratio(gas)
     if "spin_share" in attributes or swept == "spin_share":
-        share = place["spin_share"]
+        share = parameters["spin_share"]
         power = (1 - share) * mixture_states.kick_power(gas)
         return mixture_states.mixture_driven(gas, power, packing, share).overall_ratio(gas)
-    even = np.ones(len(gas.mass))
-    return Temperatures(even, mixture_states.mixture_rotation(gas, even, packing)).overall_ratio(
+    equal = np.ones(len(gas.mass))
+    return Temperatures(equal, mixture_states.mixture_rotation(gas, equal, packing)).overall_ratio(
         gas
     )

@@ -1,11 +1,14 @@
-"""Two soft spheres that meet: what goes in, what comes out."""
+"""Collisions of two soft spheres: their initial states, and the measured restitution and
+roughness."""
 
 from typing import NamedTuple
 
 import numpy as np
+from study_modules import module_of_study
 
-from roughgas.accuracy.soft_spheres import COLUMNS, new_gas, springs, step
-
+soft_spheres = module_of_study("accuracy", "soft_spheres")
+COLUMNS, new_gas = soft_spheres.COLUMNS, soft_spheres.new_gas
+springs, step = soft_spheres.springs, soft_spheres.step
 INERTIA = {2: 0.5, 3: 0.4}
 BOX = 8.0
 
@@ -28,9 +31,10 @@ class Outcome(NamedTuple):
 
 
 def shot(offset, dimension=2, phase=0.0):
-    """A pair that touches at `phase` (T), its velocity being 1 along the first axis.
+    """Return a pair that touches at `phase` (T), with a relative velocity of 1 along the first
+    axis.
 
-    `offset` is that of the paths, in a: 0 for a central contact.
+    `offset` is the offset of the paths, in a: 0 for a central contact.
     """
     position = np.full((2, dimension), 2.0)
     position[1, 0] += np.sqrt(4.0 - offset**2) + phase
@@ -42,7 +46,7 @@ def shot(offset, dimension=2, phase=0.0):
 
 
 def collide(r, beta, duration, steps, pair):
-    """One contact of `duration` (T) in `steps` steps."""
+    """Simulate one contact of `duration` (T) in `steps` steps."""
     dimension = pair.position.shape[1]
     forces = springs(r, beta, INERTIA[dimension], duration)
     gas, spheres = new_gas(*pair, (BOX,) * dimension, forces)
@@ -50,19 +54,20 @@ def collide(r, beta, duration, steps, pair):
     assert step(gas, spheres, duration / steps, 3 * steps, 0.0, rows) == 1
     assert rows[0, 2] == 1 and not gas.touching.any()
     after = Shot(gas.position, gas.velocity, gas.spin)
-    return Outcome(*_rule(pair, after), pair, after)
+    return Outcome(*_measured_r_and_beta(pair, after), pair, after)
 
 
-def _rule(before, after):
-    """r and beta, by the direction at first touch."""
+def _measured_r_and_beta(before, after):
+    """Return r and beta, by the direction at first touch."""
     n = direction_of_contact(before)
-    speeds, slips = zip(*(_contact_velocity(one, n) for one in (before, after)), strict=True)
+    speeds, slips = zip(*(_contact_velocity(pair, n) for pair in (before, after)), strict=True)
     r = -speeds[1] / speeds[0]
     return r, -(slips[1] @ slips[0]) / (slips[0] @ slips[0])
 
 
 def direction_of_contact(pair):
-    """From the second to the first particle as they touch, on straight paths."""
+    """Return the unit vector from the second to the first particle at first touch, on straight
+    paths."""
     x, u = (array[0] - array[1] for array in pair[:2])
     b, c, uu = x @ u, x @ x - 4.0, u @ u
     time = (-b - np.sqrt(b * b - uu * c)) / uu
@@ -82,10 +87,10 @@ def momentum(pair):
 
 def angular_momentum(pair):
     q = INERTIA[pair.position.shape[1]]
-    places, velocities = (
+    positions, velocities = (
         np.pad(array, ((0, 0), (0, 3 - array.shape[1]))) for array in (pair.position, pair.velocity)
     )
-    orbital = np.cross(places, velocities).sum(axis=0)
+    orbital = np.cross(positions, velocities).sum(axis=0)
     return orbital[-pair.spin.shape[1] :] + q * pair.spin.sum(axis=0)
 
 

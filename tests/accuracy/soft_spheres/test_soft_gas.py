@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 from brute_force import begin, settings
+from tests.study_modules import module_of_study
 
-from roughgas.accuracy.soft_spheres import BUILDS, COLUMNS, PAIRS, new_gas, springs, step
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.theory import collision_frequency
 
+soft_spheres = module_of_study("accuracy", "soft_spheres")
+BUILDS, COLUMNS, PAIRS = soft_spheres.BUILDS, soft_spheres.COLUMNS, soft_spheres.PAIRS
+new_gas, springs, step = soft_spheres.new_gas, soft_spheres.springs, soft_spheres.step
 PACKING = 0.1
 
 
@@ -33,7 +36,8 @@ def run(gas, spheres, dt, steps, samples=1, temperature=0.0):
 def test_the_list_of_neighbours_changes_nothing(kernel):
     """Narrow and wide skins list other pairs at other times: the same motion to rounding.
 
-    Contacts are short, so that nobody is in two of them: their order would matter a little."""
+    Contacts are short, so that no particle has two at a time, whose order would matter a little.
+    """
     ends = []
     for skin in (0.3, 1.5):
         gas, spheres = gas_of(0.8, 0.2, 1e-3, kernel, 64, 0.15, skin)
@@ -41,8 +45,8 @@ def test_the_list_of_neighbours_changes_nothing(kernel):
         moved = gas.position - np.floor(gas.position / spheres.box) * spheres.box
         ends.append((moved, gas.velocity, gas.spin, rows[0, 2], gas.counts[BUILDS]))
     first, second = ends
-    for one, other in zip(first[:3], second[:3], strict=True):
-        assert one == pytest.approx(other, abs=1e-6)
+    for narrow, wide in zip(first[:3], second[:3], strict=True):
+        assert narrow == pytest.approx(wide, abs=1e-6)
     assert first[3] == second[3] > 20 and first[4] > 3 * second[4]
 
 
@@ -71,11 +75,11 @@ def test_too_many_neighbours_are_noticed():
     assert step(cramped, spheres, 0.005, 10, 0.0, np.empty((1, 3))) == 0
 
 
-def test_the_collision_frequency_is_that_of_enskog():
-    """Elastic and smooth, at t_c nu = 0.02 and 0.01, continued to 0; within 3.5 standard errors
-    (once in 2000 seeds). Contacts that last make collisions rarer by about their share of time."""
+def test_the_collision_frequency_follows_enskog():
+    """Elastic and smooth, at t_c nu = 0.02 and 0.01, extrapolated to 0; within 3.5 standard errors
+    (once in 2000 seeds). Finite contacts make collisions rarer by about their share of time."""
     nu = collision_frequency(1.0, PACKING)
-    found, errors = [], []
+    frequencies, errors = [], []
     for share in (0.02, 0.01):
         duration = share / nu
         gas, spheres = gas_of(1.0, -1.0, duration)
@@ -83,9 +87,9 @@ def test_the_collision_frequency_is_that_of_enskog():
         run(gas, spheres, dt, per_unit, 20)
         contacts = run(gas, spheres, dt, per_unit, 600)[:, 2]
         rates = np.diff(contacts) * 2.0 / 160 / (per_unit * dt) / nu
-        found.append(rates.mean())
+        frequencies.append(rates.mean())
         errors.append(blocking_stderr(rates))
-    assert found[0] < found[1] < 1.0
-    limit, error = 2.0 * found[1] - found[0], np.hypot(2.0 * errors[1], errors[0])
+    assert frequencies[0] < frequencies[1] < 1.0
+    limit, error = 2.0 * frequencies[1] - frequencies[0], np.hypot(2.0 * errors[1], errors[0])
     assert error < 0.012
     assert limit == pytest.approx(1.0, abs=3.5 * error)

@@ -1,3 +1,5 @@
+"""Figures of studies, from synthetic datasets: legible, exact, and reproducible."""
+
 import functools
 
 import numpy as np
@@ -5,21 +7,24 @@ import pytest
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from slow_cases import slow_but
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
-from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
+from tests.study_modules import ROOT, module_of_study
 
 from roughgas.base import InputError
 from roughgas.show import style
 from roughgas.show.catalogue import figures_of
-from roughgas.show.figures import paper
-from roughgas.show.gallery import draw, draw_of_study
+from roughgas.show.gallery import draw
 from roughgas.theory import cooling_ratio, sonine_state
 from roughgas.theory.prediction import predicted_ratio
 
+STUDIES, PAPER = ROOT / "studies", ROOT / "studies" / "paper"
+paper = module_of_study("paper", "figure")
+
 
 def walls():
-    """Beds above theory; rough elastic walls put in spin, the more the smoother particles are."""
+    """Return beds with R above theory; rough elastic walls feed spin, most for smooth particles."""
 
     def excess(r, beta):
         return 0.025 * (1 - beta**2)
@@ -32,8 +37,9 @@ def walls():
     return reduced("vibrated", excess), *sides
 
 
-def of_the_paper(experiment, excess=0.0):
-    """All r of the paper, of which the least is furthest from theory, and all kinds of symbols."""
+def like_paper(experiment, excess=0.0):
+    """Return data at all r of the paper, with excess R growing with inelasticity, and all kinds of
+    symbols."""
     values = (0.6, 0.8, 0.9, 0.99)
     data = reduced(experiment, lambda r, beta: excess * (1 - r) * (1 - beta**2), r=values)
     data["contact_time_fraction"][0] = 1e-3
@@ -42,26 +48,26 @@ def of_the_paper(experiment, excess=0.0):
 
 
 def sheared():
-    data = of_the_paper("sheared", 0.1)
+    data = like_paper("sheared", 0.1)
     return data.assign(R_unsubtracted=data.R - 0.1)
 
 
-def over(experiment, parameter, values, r=(0.9,), **others):
+def over_third_axis(experiment, parameter, values, r=(0.9,), **options):
     beta = (-0.5, 0.0, 0.5, 1.0)
-    return reduced(experiment, r=r, beta=beta, third=(parameter, values), **others)
+    return reduced(experiment, r=r, beta=beta, third=(parameter, values), **options)
 
 
 def boundaries(experiment):
     shares = np.array([-0.02, 0.0, 0.1])[:, None, None] + np.zeros((3, 1, 4))
     values = (-1.0, 0.0, 1.0)
-    known = {"input_spin_share": shares, "input_spin_share_stderr": 0.002}
-    return over(experiment, "walls.roughness", values, **known)
+    spin_shares = {"input_spin_share": shares, "input_spin_share_stderr": 0.002}
+    return over_third_axis(experiment, "walls.roughness", values, **spin_shares)
 
 
 def mixtures(scene):
-    how = {"r": (0.9,), "beta": (0.0, 1.0)}
-    masses = mixed(f"{scene}_masses", ("species.second.mass", (1.0, 4.0)), **how)
-    return masses, mixed(f"{scene}_sizes", ("species.second.radius", (1.0, 2.0)), **how)
+    options = {"r": (0.9,), "beta": (0.0, 1.0)}
+    masses = mixed(f"{scene}_masses", ("species.second.mass", (1.0, 4.0)), **options)
+    return masses, mixed(f"{scene}_sizes", ("species.second.radius", (1.0, 2.0)), **options)
 
 
 def spread(scene):
@@ -72,34 +78,35 @@ def spread(scene):
 
 
 SCENES = ("cooling", "sheared", "vibrated")
-DRIVEN_AND_NOT = ("vibrated", "cooling")
+VIBRATED_AND_COOLING = ("vibrated", "cooling")
 WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
 DATA = {
-    "fig1a": lambda: (of_the_paper("vibrated", 0.23),),
+    "fig1a": lambda: (like_paper("vibrated", 0.23),),
     "fig1b": walls,
     "fig2a": lambda: (sheared(),),
-    "fig2b": lambda: (of_the_paper("cooling", -0.1),),
+    "fig2b": lambda: (like_paper("cooling", -0.1),),
     "spheres": lambda: tuple(reduced(f"{scene}_spheres") for scene in SCENES),
     "friction": lambda: tuple(
-        over(name, "friction.mu", (0.0, 0.1, 1.0))
+        over_third_axis(name, "friction.mu", (0.0, 0.1, 1.0))
         for name in ("vibrated_friction", "cooling_friction")
     ),
     "drives": lambda: (
-        over("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
+        over_third_axis("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
         boundaries("floor_materials"),
         boundaries("wall_materials"),
         boundaries("shaken_walls"),
     ),
-    "waves": lambda: (over("waves", "floor.wave", WAVES, r=(0.8, 0.9)),),
+    "waves": lambda: (over_third_axis("waves", "floor.wave", WAVES, r=(0.8, 0.9)),),
     "inertia": lambda: tuple(
-        over(f"{scene}_inertia", "spin.inertia", (0.01, 1.0)) for scene in DRIVEN_AND_NOT
+        over_third_axis(f"{scene}_inertia", "spin.inertia", (0.01, 1.0))
+        for scene in VIBRATED_AND_COOLING
     ),
     "drives_boundaries": lambda: tuple(map(boundaries, ("floor_materials", "wall_materials"))),
     "mixtures_vibrated": lambda: mixtures("vibrated"),
     "mixtures_cooling": lambda: mixtures("cooling"),
     "viscoelastic": lambda: (viscoelastic(),),
     "couette": lambda: (couette(), sheared()),
-    "mixtures_polydisperse": lambda: tuple(spread(one) for one in ("vibrated", "cooling")),
+    "mixtures_polydisperse": lambda: tuple(spread(scene) for scene in ("vibrated", "cooling")),
 }
 
 
@@ -117,70 +124,74 @@ def inputs(name, folder):
 
 
 def bars(axes):
-    """Middles of the error bars in an axes, one array a series."""
+    """Return the centres of error bars in an axes, an array for each series."""
     return [np.column_stack(box[0].get_xydata().T) for box in axes.containers]
 
 
-def is_a_picture(path):
+def has_picture(path):
     image = imread(path)
     return image.shape[0] > 600 and image.shape[1] > 800 and image.std() > 0.05
 
 
+@pytest.mark.slow
 def test_a_figure_of_a_study_is_drawn_from_its_files(tmp_path):
     output, paths = tmp_path / "figures" / "friction.png", inputs("friction", tmp_path)
-    shown = [path.stem for path in paths]
-    draw_of_study(ROOT / "studies" / "friction", "friction", paths, shows=shown, output=[output])
-    assert is_a_picture(output)
+    experiments = [path.stem for path in paths]
+    draw(STUDIES / "friction", "friction", paths, shows=experiments, output=[output])
+    assert has_picture(output)
 
 
 @functools.cache
-def drawn(name):
-    """A figure in the style of all, drawn once."""
-    study, line, suffix = name.partition("_")
-    own = part(study, "figure") if name not in figures_of("paper") else paper
+def cached_figure(name):
+    """Return a figure in the style of all figures, drawn once."""
+    study, separator, suffix = name.partition("_")
+    module = module_of_study(study, "figure") if name not in figures_of("paper") else paper
     with rc_context(style.PARAMETERS):
-        return getattr(own, name if own is paper else f"draw{line}{suffix}")(*data_of(name))
+        return getattr(module, name if module is paper else f"draw{separator}{suffix}")(
+            *data_of(name)
+        )
+
+
+@pytest.mark.parametrize("name", slow_but({"fig2b"}, DATA))
+def test_a_figure_is_legible(name):
+    assert faults(lambda: cached_figure(name)) == []
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(one, marks=[pytest.mark.slow] * (not one.startswith("fig"))) for one in DATA],
+    "name", [name for name in DATA if not name.startswith(("mix", "visco", "couette"))]
 )
-def test_a_figure_can_be_read(name):
-    assert faults(lambda: drawn(name)) == []
-
-
-@pytest.mark.parametrize(
-    "name", [one for one in DATA if not one.startswith(("mix", "visco", "couette"))]
-)
-def test_every_point_stands_where_it_was_measured(name):
+def test_every_point_is_a_measured_value(name):
     measured = [data.get("input_spin_share", data.R) for data in data_of(name)]
     axes = [data[axis] for data in data_of(name) for axis in data.R.dims if axis != "wave"]
-    known = np.concatenate([values.values.ravel() for values in (*measured, *axes)])
-    for axes in drawn(name).axes:
+    measured_values = np.concatenate([values.values.ravel() for values in (*measured, *axes)])
+    for axes in cached_figure(name).axes:
         for column in bars(axes):
-            assert np.isin(column[:, 0], known).all()
+            assert np.isin(column[:, 0], measured_values).all()
 
 
 @pytest.mark.slow
-def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
+def test_the_order_of_datasets_does_not_change_the_bytes(tmp_path):
     paths, content = inputs("fig1b", tmp_path), []
     for order in (paths, paths[::-1]):
         outputs = [tmp_path / "out" / "a.pdf", tmp_path / "out" / "a.png"]
-        draw("fig1b", order, output=outputs)
+        shows = [
+            "vibrated",
+            *(f"vibrated_{kind}_walls" for kind in ("rough", "particle", "smooth")),
+        ]
+        draw(PAPER, "fig1b", order, shows=shows, output=outputs)
         content.append([output.read_bytes() for output in outputs])
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
-    assert sorted((tmp_path / "out").iterdir()) == outputs and is_a_picture(outputs[1])
+    assert sorted((tmp_path / "out").iterdir()) == outputs and has_picture(outputs[1])
 
 
-def test_the_order_of_its_files_changes_no_picture(tmp_path):
-    """Of a figure that, as one with a layout may, looks different each time that it is drawn."""
+def test_the_order_of_outputs_does_not_change_the_picture(tmp_path):
+    """The figure of the test, as a figure with a layout may, changes each time it is drawn."""
 
     class Changing(Figure):
-        def savefig(self, *where, **how):
+        def savefig(self, *arguments, **options):
             self.text(0.5, 0.1 * (1 + len(self.texts)), "drawn")
-            super().savefig(*where, **how)
+            super().savefig(*arguments, **options)
 
     pictures = []
     for kinds in ((".pdf", ".png"), (".png", ".pdf", ".svg")):
@@ -202,26 +213,26 @@ def test_points_are_the_data_and_residuals_are_data_minus_theory():
     assert low < 0 < 0.03 < high
 
 
-def test_the_cooling_gas_is_beside_a_theory_that_is_not_maxwellian():
-    """Thin lines above, and beneath minus the theory of free cooling: one for each r."""
+def test_the_cooling_gas_is_compared_with_the_sonine_approximation():
+    """There is a thin line for each r; beneath, the theory of free cooling is subtracted."""
     main, beneath = paper.fig2b(reduced("cooling", r=(0.9, 0.99))).axes
     above, below = (
         [line for line in axes.lines if line.get_linewidth() == paper.THIN["linewidth"]]
         for axes in (main, beneath)
     )
-    for one, gap, r in zip(above[:2], below, (0.99, 0.9), strict=True):
-        beta = one.get_xdata()
-        assert np.array_equal(one.get_ydata(), sonine_state(r, beta).R, equal_nan=True)
-        expected = one.get_ydata() - cooling_ratio(r, beta)
-        assert gap.get_ydata()[1:] == pytest.approx(expected[1:], abs=1e-14, nan_ok=True)
+    for sonine_line, residual_line, r in zip(above[:2], below, (0.99, 0.9), strict=True):
+        beta = sonine_line.get_xdata()
+        assert np.array_equal(sonine_line.get_ydata(), sonine_state(r, beta).R, equal_nan=True)
+        expected = sonine_line.get_ydata() - cooling_ratio(r, beta)
+        assert residual_line.get_ydata()[1:] == pytest.approx(expected[1:], abs=1e-14, nan_ok=True)
 
 
-def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
+def test_illegal_figures_are_refused_without_a_file(tmp_path):
     paths = inputs("fig1a", tmp_path)
-    with pytest.raises(InputError, match=r"figure = fig9: must be one of fig1a"):
-        draw("fig9", paths, output=[tmp_path / "a.pdf"])
+    with pytest.raises(InputError, match=r"figure\.py = it: must have fig9\(\)"):
+        draw(PAPER, "fig9", paths, shows=["vibrated"], output=[tmp_path / "a.pdf"])
     with pytest.raises(InputError, match=r"must end in \.pdf or \.png or \.svg"):
-        draw("fig1a", paths, output=[tmp_path / "a.eps"])
+        draw(PAPER, "fig1a", paths, shows=["vibrated"], output=[tmp_path / "a.eps"])
     with pytest.raises(InputError, match=r"data of fig2b = vibrated: must be cooling"):
-        draw("fig2b", paths, output=[tmp_path / "a.pdf"])
+        draw(PAPER, "fig2b", paths, shows=["cooling"], output=[tmp_path / "a.pdf"])
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}

@@ -1,4 +1,4 @@
-"""Figures of one dataset: over time, over any sweep."""
+"""Figures of single datasets: of points over time, and of sweeps."""
 
 import math
 
@@ -17,7 +17,8 @@ from show.page.conftest import write
 
 @pytest.fixture(scope="module")
 def points(tmp_path_factory):
-    """A cooling gas, one without spin, and a driven one with an average over collisions."""
+    """Points of a cooling gas, of a gas without spin, and of a driven gas with an average of R over
+    collisions."""
     folder = tmp_path_factory.mktemp("points")
     cooling = read_point(write(folder, "cooling", "0.9", "0.5", cooling=True))
     sheared = read_point(write(folder, "sheared", "0.9", "0.5"))
@@ -26,12 +27,12 @@ def points(tmp_path_factory):
     return {"cooling": cooling, "sheared": collided, "smooth": smooth.drop_vars("E_rot_series")}
 
 
-def drawn(axes):
+def lines_by_label(axes):
     return {line.get_label().partition(":")[0]: line for line in axes.get_lines()}
 
 
 @pytest.mark.parametrize("name", ["cooling", "sheared", "smooth"])
-def test_what_is_drawn_is_the_point(points, name):
+def test_the_figure_shows_the_data_of_the_point(points, name):
     point = points[name]
     theory = ratio_of_point(point) if "R" in point else math.nan
     assert faults(lambda: sweep.draw_point(point, theory)) == []
@@ -41,23 +42,29 @@ def test_what_is_drawn_is_the_point(points, name):
     assert energies.get_yscale() == ("log" if cools else "linear")
     assert energies.get_xlabel() == ("collisions per particle" if cools else "time / $T$")
     end = float(point.plateau_end) if cools else float(clock[-1])
-    (shaded,) = [one for one in energies.patches if to_hex(one.get_facecolor()) == sweep.WINDOW]
+    (shaded,) = [
+        artist
+        for artist in energies.patches
+        if to_hex(artist.get_facecolor()) == sweep.WINDOW_COLOUR
+    ]
     span = shaded.get_x(), shaded.get_x() + shaded.get_width()
     assert span == pytest.approx((float(point.measured_from), end))
-    (E_trans,) = [one for one in energies.get_lines() if "trans" in one.get_label()]
-    block = math.ceil(clock.size / sweep.MOST_PLACES)
+    (E_trans,) = [artist for artist in energies.get_lines() if "trans" in artist.get_label()]
+    block = math.ceil(clock.size / sweep.MAX_TIMES)
     assert block == 2
     assert E_trans.get_ydata()[0] == pytest.approx(point.E_trans_series.values[:block].mean())
     assert len(ratio) == ("R" in point)
     for axes in ratio:
-        lines = drawn(axes)
+        lines = lines_by_label(axes)
         assert set(lines["mean of $R(t)$"].get_ydata()) == {float(point.R)}
         assert ("over collisions" in lines) == (name == "sheared")
         band = axes.collections[-1].get_paths()[0].get_extents()
-        R, half = float(point.R), float(point.R_ci95)
-        assert (band.y0, band.y1) == pytest.approx((R - half, R + half))
-        (found,) = [line for label, line in lines.items() if "theory" in label or "Lun" in label]
-        assert np.unique(found.get_ydata()) == [theory]
+        R, half_width = float(point.R), float(point.R_ci95)
+        assert (band.y0, band.y1) == pytest.approx((R - half_width, R + half_width))
+        (theory_line,) = [
+            line for label, line in lines.items() if "theory" in label or "Lun" in label
+        ]
+        assert np.unique(theory_line.get_ydata()) == [theory]
 
 
 def test_the_command_draws_points_too(tmp_path, monkeypatch, capsys):
@@ -65,8 +72,8 @@ def test_the_command_draws_points_too(tmp_path, monkeypatch, capsys):
     write(tmp_path, "sheared", "0.9", "0.5").rename("p.nc")
     assert main(["plot", "p.nc", "-o", "p.svg"]) == 0
     assert main(["plot", "p.nc", "--beta", "0.5", "-o", "q.svg"]) == 2
-    said = "dataset = p.nc: must be a reduced one for --over, --r and --beta"
-    assert said in capsys.readouterr().err
+    message = "dataset = p.nc: must be a reduced one for --over, --r and --beta"
+    assert message in capsys.readouterr().err
 
 
 WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
@@ -88,15 +95,15 @@ DATA = {
 
 
 @pytest.mark.parametrize("kind", DATA)
-def test_any_sweep_is_drawn_beside_theory(kind):
+def test_any_sweep_is_drawn_with_theory(kind):
     data, panels, label = DATA[kind]
     figure = sweep.draw(data)
     above, below = figure.axes[:panels], figure.axes[panels:]
     assert len(below) == panels and {axes.get_xlabel() for axes in below} == {label}
     assert all(axes.get_legend() is None for axes in above[:-1])
-    drawn = [line for line in above[0].lines if line.get_marker() not in ("None", None, "")]
+    point_lines = [line for line in above[0].lines if line.get_marker() not in ("None", None, "")]
     series = 3 if kind == "r and beta" else len(BETA)
-    markers = {line.get_marker() for line in drawn} - {"_", "|"}
+    markers = {line.get_marker() for line in point_lines} - {"_", "|"}
     assert len(markers) >= min(series, 4)
     if kind == "words":
         assert [tick.get_text() for tick in below[0].get_xticklabels()][:2] == [

@@ -1,10 +1,10 @@
-"""The check of figures finds what cannot be read, and nothing in a figure that can."""
+"""The check of figures reports illegible elements, and nothing else."""
 
 import pytest
 from matplotlib.figure import Figure
 from tests.show.figures.legibility import faults
 
-SPOILED = {  # what is done to a good figure: what is found
+FAULTS = {  # change of a legible figure: fault
     "texts[0].set_fontsize(6.9)": "'words' is printed at 6.9 pt",
     "figure.set_figwidth(8.0)": "'words' is printed at 6.1 pt",
     "figure.text(0.9, 0.02, 'too long for the figure')": "cut off by the edge",
@@ -31,12 +31,12 @@ def figure_with(*changes):
     return figure
 
 
-@pytest.mark.parametrize("change", SPOILED)
-def test_each_fault_is_found(change):
-    assert any(SPOILED[change] in fault for fault in faults(lambda: figure_with(change)))
+@pytest.mark.parametrize("change", FAULTS)
+def test_each_fault_is_reported(change):
+    assert any(FAULTS[change] in fault for fault in faults(lambda: figure_with(change)))
 
 
-def test_a_figure_that_can_be_read_has_no_fault_nor_where_words_say_how_many_points_lack():
-    said = "set_title('1 point lies outside', loc='right', fontsize=7)", "set_title('')"
-    changes = "set_xlim(-0.2, 0.8)", *said, "texts[0].set_position((0.5, 0.1))"
+def test_legible_figures_have_no_faults_nor_has_a_declared_hidden_point():
+    declaration = "set_title('1 point lies outside', loc='right', fontsize=7)", "set_title('')"
+    changes = "set_xlim(-0.2, 0.8)", *declaration, "texts[0].set_position((0.5, 0.1))"
     assert faults(figure_with) == faults(lambda: figure_with(*changes)) == []

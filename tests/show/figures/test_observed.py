@@ -1,4 +1,4 @@
-"""What observables have found, as a figure."""
+"""Figures of results of observables."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import xarray as xr
 from roughgas.base import InputError
 from roughgas.show.figures.sweep import draw_observed as draw
 
-ABOUT = {"experiment": "gas", "r": 0.9, "beta": 0.0, "particles": 9, "seed": 1}
+ATTRIBUTES = {"experiment": "gas", "r": 0.9, "beta": 0.0, "particles": 9, "seed": 1}
 
 
 def point():
@@ -18,8 +18,8 @@ def point():
         "pair_correlation_species_stderr": (dims, values / 10.0),
         "a20_species": ("species", [0.1, 0.2]),
     }
-    at = {"distance": ("distance", [1.0, 2.0, 3.0], {"long_name": "far", "units": "a"})}
-    return xr.Dataset(variables, at | {"species": ["light", "heavy"]}, ABOUT)
+    coordinates = {"distance": ("distance", [1.0, 2.0, 3.0], {"long_name": "far", "units": "a"})}
+    return xr.Dataset(variables, coordinates | {"species": ["light", "heavy"]}, ATTRIBUTES)
 
 
 def test_there_is_a_line_for_each_pair_of_species_with_its_error():
@@ -35,21 +35,21 @@ def test_there_is_a_line_for_each_pair_of_species_with_its_error():
     assert axes.get_xlabel() == "distance / a" and axes.get_ylabel() == "pair correlation"
 
 
-def test_errors_that_are_not_trusted_are_paler_and_a_line_says_so():
-    one = point()
-    flags = np.ones(one.pair_correlation_species.shape, np.int8)
-    one["pair_correlation_species_trusted"] = (one.pair_correlation_species.dims, flags)
-    assert not draw(one, "pair_correlation_species").legends
+def test_untrusted_errors_are_paler_and_explained():
+    dataset = point()
+    flags = np.ones(dataset.pair_correlation_species.shape, np.int8)
+    dataset["pair_correlation_species_trusted"] = (dataset.pair_correlation_species.dims, flags)
+    assert not draw(dataset, "pair_correlation_species").legends
     flags[1, 1, 2] = -1
-    figure = draw(one, "pair_correlation_species")
+    figure = draw(dataset, "pair_correlation_species")
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["paler: the error is not trusted"]
-    *_, paler, rest = figure.axes[0].collections
-    assert paler.get_alpha() < rest.get_alpha()
-    ends = [band.get_paths()[0].vertices[:, 0].max() for band in (paler, rest)]
+    *_, untrusted_band, trusted_band = figure.axes[0].collections
+    assert untrusted_band.get_alpha() < trusted_band.get_alpha()
+    ends = [band.get_paths()[0].vertices[:, 0].max() for band in (untrusted_band, trusted_band)]
     assert ends == [3.0, 2.0]
 
 
-def test_what_is_over_no_numbers_is_not_drawn():
+def test_variables_without_a_numeric_coordinate_are_refused():
     with pytest.raises(InputError, match=r"^--of = a20_species: .* pair_correlation_species"):
         draw(point(), "a20_species")

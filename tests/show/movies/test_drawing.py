@@ -1,4 +1,4 @@
-"""The movie of a scene: what is drawn is what there is, and the file is whole."""
+"""Movies of scenes: artists show the snapshots, and files are complete."""
 
 from contextlib import closing
 
@@ -7,9 +7,9 @@ import pytest
 from brute_force import settings
 from imageio_ffmpeg import count_frames_and_secs, read_frames
 from PIL import Image
+from raw import build, typed
 from schedules import COOLING, STEADY
 
-from roughgas.scene import build
 from roughgas.show import style as movie
 from roughgas.show.movies import MovieSubject, particles, picture, spin_scales, write
 from roughgas.simulation.trajectory import Snapshot
@@ -34,18 +34,18 @@ STILL = Snapshot(
 )
 
 
-def subject(kernel, box, beta=0.5, schedule=STEADY, **others):
-    experiment = settings(kernel, 3, box) | {"schedule": schedule} | others
-    return MovieSubject(kernel, experiment, build(experiment, 0.9, beta), 7)
+def subject(kernel, box, beta=0.5, schedule=STEADY, **settings_changes):
+    experiment = settings(kernel, 3, box) | {"schedule": schedule} | settings_changes
+    return MovieSubject(kernel, typed(experiment), build(experiment, 0.9, beta), 7)
 
 
 def shots(number=3, **changes):
     return [STILL._replace(time=10.0 + 0.1 * k, collisions=k, **changes) for k in range(number)]
 
 
-def drawn(about, frames, frame=0):
-    """The axes of the particles, with their disks and the marks on them."""
-    figure, show = picture([(about, frames)])
+def artists(movie_subject, frames, frame=0):
+    """Return the axes of the particles, the disks, and the marks on them, at a frame."""
+    figure, show = picture([(movie_subject, frames)])
     show(frame)
     above = figure.axes[0]
     disks, *lines = above.collections
@@ -53,25 +53,25 @@ def drawn(about, frames, frame=0):
 
 
 def test_a_disk_has_the_colour_of_its_spin_and_a_mark_at_its_angle():
-    _, disks, (marks,) = drawn(subject("gas", [SIDE, SIDE]), shots())
+    _, disks, (marks,) = artists(subject("gas", [SIDE, SIDE]), shots())
     assert disks.get_offsets()[:2].tolist() == [[3.0, 4.0], [6.0, 5.0]]
     assert np.all(disks.get_widths() == 2.0)
-    left, right, none = disks.get_facecolor()[:3, :3]
-    assert left[2] > left[0] and right[0] > right[2] and np.ptp(none) < 0.02
-    (start, tip), (_, other) = marks.get_segments()[:2]
+    left, right, still = disks.get_facecolor()[:3, :3]
+    assert left[2] > left[0] and right[0] > right[2] and np.ptp(still) < 0.02
+    (start, tip), (_, second_tip) = marks.get_segments()[:2]
     assert start == pytest.approx([3.0, 4.0]) and tip == pytest.approx([3.9, 4.0])
-    assert other == pytest.approx([6.0, 5.9])
+    assert second_tip == pytest.approx([6.0, 5.9])
 
 
 @pytest.mark.parametrize("top", [SIDE, "open"])
-def test_of_spheres_the_nearest_is_drawn_last(top):
-    """A bed is seen along the second axis, a gas along the third, from above."""
-    about = subject("bed" if top == "open" else "spheres", [SIDE, SIDE, top])
+def test_the_nearest_spheres_are_drawn_last(top):
+    """The line of sight in a bed is the second axis, in a gas the third, from above."""
+    gas = subject("bed" if top == "open" else "spheres", [SIDE, SIDE, top])
     position = np.array([[3.0, 6.0, 6.0], [4.0, 5.0, 4.0], [5.0, 4.0, 8.0]])
     frames = shots(position=position, spin=np.eye(3), angle=None, floor=0.0)
-    _, disks, *_ = drawn(about, frames)
-    each = disks.get_offsets()[:: len(particles.SHADES), 0]
-    assert each.tolist() == ([3.0, 4.0, 5.0] if top == "open" else [4.0, 3.0, 5.0])
+    _, disks, *_ = artists(gas, frames)
+    centres = disks.get_offsets()[:: len(particles.SPHERE_DISKS), 0]
+    assert centres.tolist() == ([3.0, 4.0, 5.0] if top == "open" else [4.0, 3.0, 5.0])
 
 
 def test_colours_are_relative_to_the_thermal_spin():
@@ -84,7 +84,7 @@ def test_colours_are_relative_to_the_thermal_spin():
     assert spin_scales(subject("sheared", [SIDE, SIDE]), frames) == pytest.approx(driven)
 
 
-def test_a_gif_has_every_frame_and_goes_round(tmp_path):
+def test_a_gif_has_every_frame_and_loops(tmp_path):
     path = tmp_path / "new" / "gas.gif"
     frames = [
         shot._replace(position=shot.position + k * np.array([0.3, 0.1]))
@@ -104,8 +104,8 @@ def test_an_mp4_has_every_frame(tmp_path):
     path = tmp_path / "gas.mp4"
     write(path, [(subject("gas", [SIDE, SIDE]), shots(5))], 25.0)
     with closing(read_frames(str(path))) as reader:
-        about = next(reader)
-    assert about["fps"] == 25.0 and about["size"][0] == 960 and about["codec"] == "h264"
+        metadata = next(reader)
+    assert metadata["fps"] == 25.0 and metadata["size"][0] == 960 and metadata["codec"] == "h264"
     assert count_frames_and_secs(str(path))[0] == 5
 
 

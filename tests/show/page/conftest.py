@@ -1,4 +1,4 @@
-"""Points and reduced datasets as the pipeline leaves them, with numbers known beforehand."""
+"""Points and reduced datasets in the layout of the pipeline, with known numbers."""
 
 import numpy as np
 import pytest
@@ -9,8 +9,8 @@ from roughgas.results.reduce import reduce_points
 SAMPLES = 450
 
 
-def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
-    """A point in `folder`, at the place where the pipeline would leave it; its path."""
+def write(folder, experiment, r, beta, seed=1, cooling=False, **attribute_changes):
+    """Write a point below `folder`, at the path that the pipeline would use; return the path."""
     clock = np.arange(float(SAMPLES))
     ratio = 0.3 + 0.1 * float(beta) + 0.001 * seed
     variables = {
@@ -36,7 +36,12 @@ def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
         variables |= {"R_collisional": ratio + 0.02, "R_collisional_stderr": 0.003}
         variables |= {"R_collisional_dof": 12.0, "R_collisional_ci95": 0.007}
     path = (
-        folder / experiment / about.get("variant", "") / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
+        folder
+        / experiment
+        / attribute_changes.get("variant", "")
+        / f"r{r}"
+        / f"beta{beta}"
+        / f"seed{seed}.nc"
     )
     attributes = {
         "experiment": experiment,
@@ -51,12 +56,13 @@ def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
         "beta_label": beta,
         "command": f"roughgas run {experiment} --r={r} --beta={beta} --seed={seed} </script>",
     }
-    write_point(path, Point(variables, attributes | about))
+    write_point(path, Point(variables, attributes | attribute_changes))
     return path
 
 
 def points_in(folder):
-    """A sheared and a cooling gas, and one that sweeps friction, in `folder`; reduced."""
+    """Write points of a sheared gas, a cooling gas, and a sweep of friction, and their reduced
+    datasets, into `folder`; return it."""
     paths = {"sheared": [], "cooling": [], "cooling_friction": []}
     for beta in ("-0.5", "0.50"):
         paths["sheared"] += [write(folder, "sheared", "0.9", beta, seed) for seed in (1, 2)]

@@ -1,6 +1,8 @@
-"""The report: captions, its front page, tables and configurations as HTML."""
+"""The report: captions, front page, tables and configurations as HTML."""
 
 import base64
+import re
+import time
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,14 +11,16 @@ import pytest
 from docutils.core import publish_parts
 from jinja2 import Environment
 from snakemake.iocontainers import Params
+from tests.configurations import EXPERIMENTS
 from tests.entry import main
-from tests.houses import FOLDERS
+from tests.study_modules import FOLDERS
 
 from roughgas import config
+from roughgas.base import all_in_rst, in_rst, in_rst_with_bold
 from roughgas.data.reduced import read_reduced
-from roughgas.results.products import write_times
+from roughgas.results.tables import write_times
 from roughgas.show.catalogue import FIGURES, figures_of
-from roughgas.show.pages import captions
+from roughgas.show.pages import PICTURE_LINK, RELATIVE_LINK, captions
 
 pytestmark = pytest.mark.slow
 
@@ -25,44 +29,122 @@ CAPTIONS = ROOT / "rules" / "captions"
 NAMES = figures_of("paper")
 
 
-def rendered(caption, **about):
-    """A caption as Snakemake renders it; a warning is an error."""
+def rendered(caption, **attributes):
+    """Return a caption as Snakemake renders it; warnings raise errors."""
     environment = Environment(trim_blocks=True, lstrip_blocks=True)
     text = environment.from_string((CAPTIONS / f"{caption}.rst").read_text("utf-8"))
     settings = {"halt_level": 2, "report_level": 5}
-    source = text.render(snakemake=SimpleNamespace(**about))
+    source = text.render(snakemake=SimpleNamespace(**attributes))
     return publish_parts(source, writer="html", settings_overrides=settings)["body"]
 
 
 @pytest.fixture(scope="module")
 def loaded():
-    return config.load(ROOT / "tests" / "experiments.yaml")
+    return config.load(EXPERIMENTS)
 
 
 @pytest.fixture(scope="module")
 def studied():
-    return config.load(ROOT / "config.yaml")["folders"]
+    return config.load(ROOT / "config.yaml").studies
 
 
-@pytest.mark.parametrize("figure", [*figures_of("paper"), *figures_of("accuracy")])
+@pytest.mark.parametrize("figure", NAMES)
 def test_a_caption_is_rendered_and_says_how_it_was_made(figure, loaded):
-    about = {"caption": (CAPTIONS / f"{figure}.rst").read_text("utf-8")}
-    about["experiments"] = {"cooling": config.experiment(loaded, "cooling", "paper")}
-    about["studies"] = config.accuracy(loaded, "paper")
-    wildcards = SimpleNamespace(figure=figure, study_figure=figure, folder="")
-    template = "figure" if figure in NAMES else "study"
-    text = rendered(template, wildcards=wildcards, params=Params(fromdict=about))
-    assert ("21 values from -0.95 to 1" if figure in NAMES else "repetitions 600") in text
+    params = {"caption": captions(ROOT / "studies/paper", NAMES)[figure]}
+    params["experiments"] = {"cooling": loaded.experiment("cooling", "paper").raw}
+    text = rendered("figure", wildcards=SimpleNamespace(folder=""), params=Params(fromdict=params))
+    assert "21 values from -0.95 to 1" in text
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
+def test_a_caption_of_accuracy_has_the_settings_of_tasks(loaded):
+    params = {"caption": captions(ROOT / "studies" / "coverage", ["coverage"])["coverage"]}
+    params["experiments"] = {}
+    params["studies"] = {"coverage": loaded.accuracy_at("paper")["coverage"]}
+    text = rendered("figure", wildcards=SimpleNamespace(folder=""), params=Params(fromdict=params))
+    assert "repetitions 600" in text and "How often stated intervals contain the truth" in text
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
 def test_readme_of_a_study_has_a_caption_for_each_figure(folder, studied):
-    figures = studied[folder.name]["figures"]
-    found = captions(folder, [*figures])
-    assert found.keys() == figures.keys()
-    for caption in found.values():
+    figures = studied[folder.name].figures
+    captions_by_figure = captions(folder, [*figures])
+    assert captions_by_figure.keys() == figures.keys()
+    for caption in captions_by_figure.values():
         params = Params(fromdict={"caption": caption, "experiments": {}})
         rendered("figure", wildcards=SimpleNamespace(folder=""), params=params)
+
+
+HOSTILE = r"""
+.. include:: /etc/passwd
+
+.. raw:: html
+
+   <script>alert(1)</script>
+
+.. image:: javascript:alert(1)
+.. role:: raw-html(raw)
+   :format: html
+
+:raw-html:`<script>alert(1)</script>` `a <javascript:alert(1)>`_ |name| Workflow_ [1]_
+\`b <javascript:alert(1)>`_ \\`c <javascript:alert(1)>`_ **d `e <javascript:alert(1)>`_**
+http://example.org mail@example.org
+
+.. _Workflow: javascript:alert(1)
+
+{{ snakemake.config }} {% for x in y %} ** ** ** f</script><!-- \x00`g`_ Statistics_::
+
+Heading
+=======
+
+**h**i **j**."""
+TAG = re.compile(r"<(?!/?(?:p|strong|ul|li|div|blockquote|tt)\b)[^>]*>")
+LINKS = """
+
+.. _Workflow: javascript:show_panel('workflow')
+.. _Statistics: javascript:show_panel('statistics')
+"""
+
+
+def words(text):
+    return " ".join(text.split())
+
+
+def test_markup_in_a_readme_or_in_settings_is_escaped_in_the_report(tmp_path):
+    """Directives, roles, links, HTML and Jinja. Snakemake adds link targets, and renders once."""
+    (tmp_path / "README.md").write_text(f"# Mine\n\n![x](mine.png)\n{HOSTILE.strip()}\n")
+    caption = captions(tmp_path, ["mine"])["mine"]
+    template = f"{(CAPTIONS / 'figure.rst').read_text('utf-8')}{LINKS}"
+    line = words(HOSTILE)
+    params = {"caption": caption, "experiments": {}, "studies": {"mine": all_in_rst({line: line})}}
+    environment = Environment(trim_blocks=True, lstrip_blocks=True)
+    snakemake = SimpleNamespace(
+        params=Params(fromdict=params), wildcards=SimpleNamespace(folder="")
+    )
+    source = environment.from_string(template).render(snakemake=snakemake)
+    settings = {"halt_level": 2, "report_level": 5}  # a warning is an error
+    body = publish_parts(source, writer="html", settings_overrides=settings)["body"]
+    assert TAG.findall(body) == []
+    text = words(unescape(re.sub(r"<[^>]*>", "", body)))
+    for sentence in (".. include:: /etc/passwd", "{{ snakemake.config }} {% for x in y %}"):
+        assert text.count(sentence) == 3
+    assert "<strong>h</strong>i <strong>j</strong>." in body and "Heading =======" in text
+    assert not re.search(r"</|<!--", str(params))  # these are within a script
+
+
+def test_names_and_numbers_are_verbatim_in_captions():
+    assert [in_rst(text) for text in ("lees_edwards", "-0.5", "1e-08", "a_")] == [
+        *("lees_edwards", "-0.5", "1e-08", r"a\_")
+    ]
+    assert in_rst_with_bold("**What.** x\ny\n\nz") == "\\ **What\\.**\\  x y\n\nz"
+
+
+@pytest.mark.parametrize("text", ["![", "![](", "![](/a.", "[", "[](", "![](a.png", "](", "a."])
+def test_a_long_readme_is_searched_in_linear_time(text):
+    """It would take minutes to follow each opening bracket to the end of the text."""
+    long = f"![]({(text * 200_000)[:200_000]}"
+    begin = time.process_time()
+    PICTURE_LINK.split(long), RELATIVE_LINK.sub(r"\1", long)
+    assert time.process_time() - begin < 5
 
 
 TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
@@ -71,36 +153,38 @@ CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
 
 @pytest.fixture
 def files(tmp_path):
-    """Pictures, captions and verdicts, with known content."""
+    """A folder of pictures and verdicts with known content."""
     (tmp_path / "claims.md").write_text(CLAIMS)
     for name in NAMES:
         (tmp_path / f"{name}.png").write_bytes(name.encode())
-        (tmp_path / f"{name}.rst").write_text(
-            f"What {name}\nshows.\n\n**What to notice.** x < y.\n"
-        )
     return tmp_path
 
 
 def front(folder, figures=NAMES, captions=NAMES):
-    """The exit status of the step `front`, which writes report.html."""
-    parts = ["--figures", *(str(folder / f"{name}.png") for name in figures)]
-    parts += ["--captions", *(str(folder / f"{name}.rst") for name in captions)]
-    return main(["front", str(folder / "claims.md"), *parts, "-o", str(folder / "report.html")])
+    """Run the step `front`, which writes report.html; return its exit status."""
+    texts = (
+        f"![{name}](figures/{name}.png)\n\nWhat {name}\nshows.\n\n**What to notice.** x < y.\n\n"
+        for name in captions
+    )
+    (folder / "README.md").write_text("# The paper\n\n" + "".join(texts))
+    options = ["--figures", *(str(folder / f"{name}.png") for name in figures)]
+    options += ["--readme", str(folder / "README.md")]
+    return main(["front", str(folder / "claims.md"), *options, "-o", str(folder / "report.html")])
 
 
-def test_it_opens_on_the_figures_each_with_its_caption_and_words_for_who_cannot_see_it(files):
+def test_the_front_page_has_figures_with_captions_and_alternative_texts(files):
     assert front(files) == 0
     text = (files / "report.html").read_text("utf-8")
-    places = []
+    positions = []
     for name in NAMES:
-        places.append(text.index(base64.b64encode(name.encode()).decode()))
+        positions.append(text.index(base64.b64encode(name.encode()).decode()))
         assert f'alt="{FIGURES[name].title}. What {name} shows."' in unescape(text)
         assert f"<h2>{FIGURES[name].title}</h2>\n<p>What {name}\nshows.</p>" in text
-    assert places == sorted(places) and places[-1] < text.index("<h1>The verdict</h1>")
+    assert positions == sorted(positions) and positions[-1] < text.index("<h1>The verdict</h1>")
     assert "<strong>What to notice.</strong> x &lt; y." in text
 
 
-def test_a_figure_without_a_caption_or_a_place_is_refused(files, capsys):
+def test_a_figure_without_a_caption_or_an_entry_is_refused(files, capsys):
     assert front(files, captions=NAMES[:1]) == 2
     assert "captions = fig1a: must have one of fig1b" in capsys.readouterr().err
     (files / "mine.png").write_bytes(b"")
@@ -114,13 +198,15 @@ def html(source, tmp_path):
     return (tmp_path / "shown.html").read_text("utf-8")
 
 
-def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
+def test_pictures_near_a_text_are_embedded(tmp_path):
     for name in ("secret.png", "a/pictures/fig 1.png", "a/key.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(name.encode())
-    named = ["pictures/fig%201.png", "../secret.png", "key.txt", "none.png", "http://x.org/a.png"]
+    sources = ["pictures/fig%201.png", "../secret.png", "key.txt", "none.png", "http://x.org/a.png"]
     table = "| ![t](pictures/fig%201.png) |\n| --- |\n"
-    (tmp_path / "a/page.md").write_text("\n\n".join([f"![p]({one})" for one in named] + [table]))
+    (tmp_path / "a/page.md").write_text(
+        "\n\n".join([f"![p]({source})" for source in sources] + [table])
+    )
     text = html(tmp_path / "a/page.md", tmp_path)
     data = base64.b64encode(b"a/pictures/fig 1.png").decode()
     assert text.count(f'src="data:image/png;base64,{data}"') == 2 and text.count("base64,") == 2
@@ -136,3 +222,53 @@ def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
         "| together |  | 6 | 8 | 9,872 | 2.0 | 4,936 |",
     ]
     assert read_reduced(points / "sheared.nc").kernel_seconds.sum().item() == 1.0
+
+
+RESERVED = "Findings were written for the data of another study, friction."
+STUDY_README = """\
+# Friction
+
+Does R depend on friction?
+
+## Findings
+
+It does.
+
+![R over friction](figures/mine.png)
+
+Points of a bed. **What to notice.** They rise.
+"""
+
+
+def study_page(folder, *options):
+    """Run the step `study_page` of a study with a picture and verdicts; return its text."""
+    (folder / "README.md").write_text(STUDY_README)
+    (folder / "mine.png").write_bytes(b"picture")
+    (folder / "claims.md").write_text(CLAIMS)
+    arguments = ["study_page", str(folder), "--title", "Friction", *options]
+    arguments += ["--figures", str(folder / "mine.png"), "--claims", str(folder / "claims.md")]
+    assert main([*arguments, "--output", str(folder / "page.html")]) == 0
+    return (folder / "page.html").read_text("utf-8")
+
+
+def test_a_page_of_other_data_has_a_question_and_no_findings(tmp_path, monkeypatch):
+    """Its picture and its verdicts are there, since they are of its data."""
+    monkeypatch.chdir(tmp_path)
+    judged = study_page(Path())
+    assert "It does." in judged and "They rise." in judged and "Not judged yet" not in judged
+    reserved = study_page(Path(), f"--reservation={RESERVED}")
+    assert "It does." not in reserved and "They rise." not in reserved
+    assert f"<strong>Not judged yet.</strong> {RESERVED}" in reserved
+    for shared in ("Does R depend on friction?", base64.b64encode(b"picture").decode(), "<h2>"):
+        assert shared in judged and shared in reserved
+    assert "The verdict" in reserved
+
+
+def test_the_front_page_of_other_data_has_no_captions(files):
+    assert front(files) == 0
+    arguments = ["front", str(files / "claims.md"), f"--reservation={RESERVED}", "--figures"]
+    arguments += [*(str(files / f"{name}.png") for name in NAMES)]
+    arguments += ["--readme", str(files / "README.md"), "-o", str(files / "other.html")]
+    assert main(arguments) == 0
+    text = (files / "other.html").read_text("utf-8")
+    assert "What to notice" not in text and text.count(RESERVED) >= len(NAMES)

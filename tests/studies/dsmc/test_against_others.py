@@ -2,18 +2,20 @@
 
 import numpy as np
 import pytest
+from raw import FreeCooling
+from schedules import COOLING
 from tests.theory.collisions import Dsmc
 
 from roughgas import theory
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.tasks import dsmc
-from roughgas.tasks.free_cooling import FreeCooling, event_driven
+from roughgas.tasks.free_cooling import event_driven_ratios
 
 EXPERIMENT = {
     "particles": 160,
     "box": [100, 100],
     "effects": {"spin": {"inertia": 0.5}},
-    "schedule": {"thermalise": 20},
+    "schedule": COOLING | {"thermalise": 20},
 }
 
 
@@ -23,7 +25,7 @@ def settled(r, beta, dimension, particles, samples, seed):
 
 
 def settled_samples(r, beta, dimension, particles, samples, seed):
-    """Samples of a cooling gas once it has settled."""
+    """Return samples of a cooling gas in its stationary state."""
     rng = np.random.default_rng(seed)
     theta = theory.stationary_theta(r, beta, dimension)
     gas, material = (
@@ -31,13 +33,13 @@ def settled_samples(r, beta, dimension, particles, samples, seed):
         dsmc.material(r, beta, dimension),
     )
     skipped = round(10 / theory.relaxation_rate(r, beta, dimension))
-    found = dsmc.run(gas, material, rng, 1, skipped + samples)
-    return dsmc.Samples(*(column[skipped:] for column in found))
+    samples_of_run = dsmc.run(gas, material, rng, 1, skipped + samples)
+    return dsmc.Samples(*(column[skipped:] for column in samples_of_run))
 
 
 def ratios(particles, r, beta, dimension, until, seed, mu=np.inf, theta=1.0):
-    """Collisions per particle and R every 0.12 of them, of a simulation that shares no code with
-    the package: Nanbu's idea with Babovsky's pairs, in numpy."""
+    """Return collisions per particle and R every 0.12 of them, of a simulation that shares no code
+    with the package: Nanbu's idea with Babovsky's pairs, in numpy."""
     alike = theory.mixture([{"fraction": 1}], r, beta, dimension, mu=mu)
     gas, passed, R = Dsmc(alike, particles, seed, theta), [0.0], []
     while passed[-1] < until:
@@ -47,6 +49,7 @@ def ratios(particles, r, beta, dimension, until, seed, mu=np.inf, theta=1.0):
     return np.array(passed[1:]), np.array(R)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_another_scheme_finds_the_same_gas(dimension):
     """Within 4 standard errors: by chance once in 16 000 times. The Maxwellian theory is refuted
@@ -55,16 +58,16 @@ def test_another_scheme_finds_the_same_gas(dimension):
     R, error = settled(r, beta, dimension, 10_000, 300, 1)
     passed, series = ratios(4_000, r, beta, dimension, 120, 2)
     series = series[passed > 50]
-    other, other_error = series.mean(), blocking_stderr(series)
+    other_R, other_error = series.mean(), blocking_stderr(series)
     theoretical = theory.cooling_ratio(r, beta, dimension)
-    assert R - other == pytest.approx(0.0, abs=4 * np.hypot(error, other_error))
-    assert theoretical - R > 5 * error and theoretical - other > 5 * other_error
+    assert R - other_R == pytest.approx(0.0, abs=4 * np.hypot(error, other_error))
+    assert theoretical - R > 5 * error and theoretical - other_R > 5 * other_error
 
 
 @pytest.mark.slow
 def test_another_scheme_finds_the_same_gas_with_friction():
-    """R on its way up from no spin, where most contacts slide, and on from there: before single
-    particles run away. Within 4 standard errors of eight gases each."""
+    """R during its rise from no spin, where most contacts slide, and later, before single particles
+    run away. Within 4 standard errors of eight gases each."""
     r, beta, mu, seeds = 0.9, 0.0, 0.15, 8
     runs = np.empty((2, seeds, 3))
     for seed in range(seeds):
@@ -86,29 +89,29 @@ def test_another_scheme_finds_the_same_gas_with_friction():
     ],
 )
 def test_another_program_finds_the_same_cumulants(dimension, r, beta, expected):
-    """Numbers of a DSMC program that shares no code with this one. They were given with two or
-    three digits: half a unit of the last, and 4 standard errors of ours.
+    """Published by a DSMC program that shares no code with this one, to two or three digits: half a
+    unit of the last digit, and 4 standard errors of ours.
 
     Spins prefer to be perpendicular to velocities, as N. V. Brilliantov et al. found (2007).
     """
-    found = settled_samples(r, beta, dimension, 10_000, 100, 5)
+    samples = settled_samples(r, beta, dimension, 10_000, 100, 5)
     for name, value in expected.items():
-        values, digit = getattr(found, name), 0.005 if name == "a02" else 0.0005
+        values, digit = getattr(samples, name), 0.005 if name == "a02" else 0.0005
         assert values.mean() == pytest.approx(value, abs=digit + 4 * blocking_stderr(values))
 
 
 @pytest.mark.parametrize("dimension, r", [(2, 0.9), (3, 0.8)])
-def test_the_sonine_approximation_has_what_is_not_maxwellian(dimension, r):
-    """It leaves at most a fifth of what the Maxwellian theory misses, and a quarter of cumulants,
-    with 4 standard errors of the simulation."""
-    found = settled_samples(r, 0.0, dimension, 20_000, 100, 6)
+def test_the_sonine_approximation_explains_deviations_from_maxwellians(dimension, r):
+    """Its error is at most a fifth of the error of Maxwellian theory, and a quarter of the
+    cumulants, with 4 standard errors of the simulation."""
+    samples = settled_samples(r, 0.0, dimension, 20_000, 100, 6)
     expected = theory.sonine_state(r, 0.0, dimension)
     missed = abs(expected.R - theory.cooling_ratio(r, 0.0, dimension))
-    error = blocking_stderr(found.R)
+    error = blocking_stderr(samples.R)
     assert missed > 8 * error
-    assert found.R.mean() == pytest.approx(expected.R, abs=missed / 5 + 4 * error)
+    assert samples.R.mean() == pytest.approx(expected.R, abs=missed / 5 + 4 * error)
     for name in ("a20", "a11", "a02", "alignment"):
-        values, value = getattr(found, name), getattr(expected, name)
+        values, value = getattr(samples, name), getattr(expected, name)
         within = abs(value) / 4 + 4 * blocking_stderr(values)
         assert values.mean() == pytest.approx(value, abs=within)
 
@@ -118,12 +121,13 @@ def test_the_sonine_approximation_has_what_is_not_maxwellian(dimension, r):
 def test_a_dilute_event_driven_gas_is_homogeneous(r, beta):
     """Within 4 standard errors, both of 160 particles, at a packing of 1e-4.
 
-    So few particles share their energy unevenly: the mean of R is not the R of the mean energies,
-    and momentum is short of one particle. That shifts R by some thousandths, in both alike. At a
-    packing of 0.01 R is some thousandths higher still, since neighbours come to move alike.
+    Few particles share their energy unevenly: the mean of R differs from the R of mean energies,
+    and the fixed momentum takes the degrees of freedom of one particle. That shifts R by some
+    thousandths, in both alike. At a packing of 0.01 R is some thousandths higher still, since
+    velocities of neighbours become correlated.
     """
     cooling = FreeCooling(EXPERIMENT, r, beta).at_packing(1e-4)
-    R = event_driven(cooling, 400, 8000, np.random.SeedSequence(3))
+    R = event_driven_ratios(cooling, 400, 8000, np.random.SeedSequence(3))
     error = R.std(ddof=1) / np.sqrt(len(R))
     simulated, simulated_error = settled(r, beta, 2, 160, 50_000, 4)
     assert error < 4e-3 * R.mean()

@@ -1,1 +1,1 @@
-"""Figures of the paper and of what it leaves open, drawn from reduced data beside theory."""
+"""Figures of R beside theory, of single datasets, and of evidence."""

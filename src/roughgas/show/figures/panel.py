@@ -1,4 +1,9 @@
-"""R against one parameter beside theory, residuals beneath: the form of all figures of R."""
+"""Panels of R over one parameter: points and theory, and their residuals beneath.
+
+All figures of R have this form. R = E_rot/(E_rot + E_trans), from energies per degree of freedom; r
+is the normal restitution, beta the roughness. `data` is a reduced dataset; a residual is measured R
+minus R of theory; an average of R is a key of AVERAGES, the name of its variable.
+"""
 
 import math
 from collections.abc import Callable, Container, Mapping, Sequence
@@ -11,23 +16,23 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from roughgas.data.reduced import EQUILIBRATED, particles_of
-from roughgas.show.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, Look, Style
+from roughgas.data.reduced import STEADY_SHARE, particles_of
+from roughgas.show.style import FAINT, GREY, HEIGHT, LINE_STYLES, THEORY, WIDTH, LineStyle, Style
 from roughgas.theory.prediction import predicted_ratio
 
 RESTITUTION = 0.9
-"""The r of figures that show only one, where it is in the data."""
+"""The r of figures that show a single r, if the data have it."""
 
 
 class Series(NamedTuple):
-    """Measured R along an axis, beside theory, and how it is drawn."""
+    """Measured R along an axis, the R of theory, and their line style."""
 
     label: str
-    look: Look
+    line_style: LineStyle
     data: xr.Dataset  # (n,) along the axis
-    at: np.ndarray  # (n,) where it is drawn
+    x: np.ndarray  # (n,) horizontal positions
     theory: np.ndarray  # (n,) predicted R
-    predict: Callable[..., np.ndarray]  # R of theory at other values of the axis, given by name
+    predict: Callable[..., np.ndarray]  # R of theory; other parameters by name
 
     @property
     def residual(self) -> np.ndarray:
@@ -35,93 +40,114 @@ class Series(NamedTuple):
         return self.residual_of("R")
 
     def residual_of(self, average: str) -> np.ndarray:
-        """Return the same of another average of R, called so in the data."""
+        """Return the measured values of the variable `average`, an average of R, minus R of theory,
+        (n,)."""
         return self.data[average].values - self.theory
 
     def error_of(self, average: str) -> np.ndarray:
-        """Return its standard errors, (n,); NaN where the data have none."""
+        """Return the standard errors of the variable `average`, an average of R, (n,); NaN if the
+        data have none."""
         return self.data.get(f"{average}_stderr", math.nan * self.data.R).values
 
     @property
     def steady(self) -> np.ndarray:
-        """Whether a steady state was found, (n,)."""
-        return self.data.equilibrated.values > EQUILIBRATED
+        """Mask of points with a steady state, (n,)."""
+        return self.data.equilibrated.values > STEADY_SHARE
 
     @property
-    def known(self) -> np.ndarray:
-        """Whether there was evidence to tell, (n,)."""
+    def steadiness_known(self) -> np.ndarray:
+        """Mask of points that were long enough to decide whether they are steady, (n,)."""
         return self.data.equilibrated.values >= 0
 
     @property
-    def touched(self) -> np.ndarray:
-        """Whether the contact-time model acted, (n,)."""
+    def contact_time_acted(self) -> np.ndarray:
+        """Mask of points with contacts that the contact-time model altered, (n,)."""
         return self.data.get("contact_time_fraction", 0 * self.data.R).values > 0
 
 
-def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
-    """Return the points that hold data along the one axis that `place` leaves, beside theory.
+def series(data: xr.Dataset, label: str, line_style: LineStyle, **selection: Any) -> Series:
+    """Return the series along the axis that remains when `selection`, values by name, fixes all
+    other coordinates of a reduced dataset.
 
-    Raises KeyError where it leaves more, or is not in the data.
+    `label` is the text of its legend. Points without data are dropped. Raises KeyError if several
+    axes remain, or if the data lack the selection.
     """
-    row = data.sel(place)
-    axis, *others = row.R.dims
-    if others:
-        raise KeyError(f"one axis besides {', '.join(place)}")
+    row = data.sel(selection)
+    axis, *parameters = row.R.dims
+    if parameters:
+        raise KeyError(f"one axis besides {', '.join(selection)}")
     row = row.isel({axis: np.isfinite(row.R.values)})
 
-    def predict(**others):
-        settings = data.attrs | place | others
+    def predict(**parameters):
+        """Return R of theory at the selection, with the coordinates or attributes `parameters`
+        replaced."""
+        settings = data.attrs | selection | parameters
         return predicted_ratio(settings, settings["r"], settings["beta"])
 
-    at = row[axis].values
-    return Series(label, look, row, at, predict(**{axis: at}), predict)
+    x = row[axis].values
+    return Series(label, line_style, row, x, predict(**{axis: x}), predict)
 
 
 def restitution_of(data: xr.Dataset) -> float:
-    """Return the r that figures of only one show: RESTITUTION, or else the largest."""
+    """Return the r of figures that show a single r: RESTITUTION if the data have it, or else their
+    largest."""
     return RESTITUTION if RESTITUTION in data.r else float(data.r.max())
 
 
 def series_for_each(
-    data: xr.Dataset, name: str, symbol: str = r"\beta", looks: Sequence[Look] = LOOKS
+    data: xr.Dataset,
+    axis: str,
+    symbol: str = r"\beta",
+    line_styles: Sequence[LineStyle] = LINE_STYLES,
 ) -> list[Series]:
-    """Return one series for each r, from nearly elastic downwards; or for each other value of the
-    coordinate `name` at one r (`restitution_of`), the smallest first."""
-    place = {} if name == "r" else {"r": restitution_of(data)}
-    values = sorted(data[name].values, reverse=name == "r")
+    """Return a series for each value of the coordinate `axis` of a reduced dataset, each in the
+    next of `line_styles`.
+
+    `symbol` is the TeX of the coordinate in labels. For `axis` "r" the values decrease; for others
+    they increase, all at one r (`restitution_of`).
+    """
+    selection = {} if axis == "r" else {"r": restitution_of(data)}
+    values = sorted(data[axis].values, reverse=axis == "r")
     return [
-        series(data, f"${symbol} = {value:g}$", looks[i % len(looks)], **{name: value}, **place)
+        series(
+            data,
+            f"${symbol} = {value:g}$",
+            line_styles[i % len(line_styles)],
+            **{axis: value},
+            **selection,
+        )
         for i, value in enumerate(values)
     ]
 
 
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
 AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
-"""The ways in which R is averaged, by the names of variables; the first is the paper's."""
+"""Averages of R, by the names of their variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
 DOTS = (0, (1, 2))
-NOT_STEADY: Style = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
+NOT_STEADY: Style = {"markerfacecolor": "white", "zorder": 4}  # above all other symbols
 NOT_KNOWN: Style = {"fillstyle": "bottom", "markerfacecoloralt": "white", "zorder": 4}
-TOUCHED = "†"
+CONTACT_TIME_MARK = "†"
 
 
 class Axis(NamedTuple):
-    """A coordinate of reduced datasets, drawn horizontally."""
+    """A coordinate of reduced datasets, drawn horizontally: its name, its label, and the ends of
+    the axis (`limits`)."""
 
     name: str
     label: str
     limits: tuple[float, float]
-    drawn: tuple[float, float]  # where theory is drawn from and to
+    drawn: tuple[float, float]  # ends of the curves of theory
     logarithmic: bool = False
 
     @property
     def grid(self) -> np.ndarray:
-        """Close values at which theory is drawn, (801,)."""
+        """Values of the coordinate for curves of theory, (801,)."""
         spaced = np.geomspace if self.logarithmic else np.linspace
         return spaced(*self.drawn, 801)
 
     def prepare(self, axes: Axes) -> None:
-        """Label the axis of a plot, and set its scale and its limits."""
+        """Set the label, scale, limits and ticks of the horizontal axis of a plot."""
         axes.set_xlabel(self.label)
         if self.logarithmic:
             axes.set_xscale("log")
@@ -142,134 +168,165 @@ ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 
 
 
 class Panel(NamedTuple):
-    """R above, residuals beneath, of one average of R or more, all over one axis."""
+    """Axes of a panel: R above, and beneath a row of residuals for each average of R."""
 
     main: Axes
     residuals: Sequence[Axes]
     axis: Axis
 
 
-HALF: Style = {"loc": "half", "fontsize": 7, "labelspacing": 0.2}
+LEGEND_AT_HALF: Style = {"loc": "half", "fontsize": 7, "labelspacing": 0.2}
 
 
 class PanelContent(NamedTuple):
-    """What a figure shows in one of its panels."""
+    """Content of a panel of a figure."""
 
-    title: str  # what is shown
-    data: Sequence[xr.Dataset]  # whose size and seeds the title gives
+    title: str
+    data: Sequence[xr.Dataset]  # the title gives their size and number of seeds
     drawn: Sequence[Series]
-    theory: str = ""  # of all series: a black line, so called in the legend
-    theories: str = ""  # of each series: a line in its look; the title of the legend
-    legend: Mapping[str, Any] = {"loc": "upper left"}  # of draw_legend; empty: there is none
+    theory: str = ""  # label of a single black line for all series
+    theories: str = ""  # title of the legend, if each series has its own line
+    legend: Mapping[str, Any] = {"loc": "upper left"}  # options of add_legend; empty: no legend
     axis: Axis = BETA
-    message: str = ""  # what one learns from it, above the title
-    room: float = 0.0  # beneath the points, as a share of their height
-    # of the series drawn: those whose residuals are to fit
+    message: str = ""  # the conclusion, above the title
+    room: float = 0.0  # empty space beneath the points, as a share of their height
+    # selects the series that set the scale of residuals
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
-    # draws what only this figure has
+    # draws additions of this figure
     extra: Callable[[Panel, Sequence[Series]], None] = lambda panel, drawn: None
 
 
-def content_for_each_r(title: str, data: xr.Dataset, **how: Any) -> PanelContent:
-    """Return a part with one series for each r."""
-    return PanelContent(title, [data], series_for_each(data, "r", "r"), **how)
+def content_for_each_r(title: str, data: xr.Dataset, **options: Any) -> PanelContent:
+    """Return the content of a panel with a series for each r; `options` are further fields of
+    PanelContent."""
+    return PanelContent(title, [data], series_for_each(data, "r", "r"), **options)
 
 
 def content_for_each_beta(
-    title: str, data: xr.Dataset, symbol: str = r"\beta", **how: Any
+    title: str, data: xr.Dataset, symbol: str = r"\beta", **options: Any
 ) -> PanelContent:
-    """Return a part with one series for each beta, all at one r (`restitution_of`)."""
+    """Return the content of a panel with a series for each beta, at one r (`restitution_of`).
+
+    `title` is completed by this r; `symbol` is the TeX of beta in labels; `options` are further
+    fields of PanelContent.
+    """
     drawn = series_for_each(data, "beta", symbol)
-    return PanelContent(rf"{title}, $r = {restitution_of(data):g}$", [data], drawn, **how)
+    return PanelContent(rf"{title}, $r = {restitution_of(data):g}$", [data], drawn, **options)
 
 
 def ratio_figure(
-    *parts: PanelContent, width: float = WIDTH, averages: Sequence[str] = ("R",)
+    *contents: PanelContent, width: float = WIDTH, averages: Sequence[str] = ("R",)
 ) -> Figure:
-    """Draw the parts side by side: points above theory, minus theory beneath, legends, titles.
+    """Return a figure of panels side by side, one for each of `contents`: points, theory,
+    residuals, legends, titles.
 
-    There is a row of residuals for each of `averages`; R itself is the first of AVERAGES.
+    `width` is in inches. There is a row of residuals for each of `averages`, names in AVERAGES.
     """
-    figure, panels = ratio_panels([part.axis for part in parts], width, averages)
-    for part, panel in zip(parts, panels, strict=True):
-        draw_series(panel, part.drawn, averages)
-        draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
-        part.extra(panel, part.drawn)
-        frame_rows(panel, part.drawn, part.scale(part.drawn), averages)
-        add_title(panel.main, part.data, part.title, part.message)
-    known: set[str] = set()
-    for part, panel in zip(parts, panels, strict=True):
+    figure, panels = ratio_panels([content.axis for content in contents], width, averages)
+    for content, panel in zip(contents, panels, strict=True):
+        draw_series(panel, content.drawn, averages)
+        draw_theory(
+            panel,
+            content.drawn[:1] if content.theory else content.drawn,
+            black=bool(content.theory),
+        )
+        content.extra(panel, content.drawn)
+        frame_rows(panel, content.drawn, content.scale(content.drawn), averages)
+        add_title(panel.main, content.data, content.title, content.message)
+    explained: set[str] = set()
+    for content, panel in zip(contents, panels, strict=True):
         low, high = panel.main.get_ylim()
-        panel.main.set_ylim(low - part.room * (high - low), high)
-        if part.legend:
-            how = {"title": part.theories or None, **part.legend}
-            add_legend(panel.main, part.drawn, part.theory, known, **how)
-            known |= {_mark(one) for one in part.drawn} | {part.theory, "equipartition"}
-    add_notes(figure, [one for part in parts for one in part.drawn])
+        panel.main.set_ylim(low - content.room * (high - low), high)
+        if content.legend:
+            legend_options = {"title": content.theories or None, **content.legend}
+            add_legend(panel.main, content.drawn, content.theory, explained, **legend_options)
+            explained |= {_legend_label(curve) for curve in content.drawn} | {
+                content.theory,
+                "equipartition",
+            }
+    add_notes(figure, [curve for content in contents for curve in content.drawn])
     return figure
 
 
 def averages_of(data: xr.Dataset) -> list[str]:
-    """Return the averages of R that theory is for: in a sheared gas contacts see the mean flow."""
+    """Return the names of the averages of R in a reduced dataset that theory describes.
+
+    In a sheared gas this is R alone, since averages over contacts contain the mean flow.
+    """
     return [name for name in AVERAGES if name in data][: 1 if "R_unsubtracted" in data else None]
 
 
 def ratio_panels(
     axes: Sequence[Axis], width: float = WIDTH, averages: Sequence[str] = ("R",)
 ) -> tuple[Figure, list[Panel]]:
-    """Return an empty figure, and its panels side by side; R has the same scale in all."""
+    """Return an empty figure, and its panels side by side, one for each of `axes`, their horizontal
+    axes; all share the scale of R.
+
+    `width` is in inches. There is a row of residuals for each of `averages`, names in AVERAGES.
+    """
     rows = len(averages)
     figure = Figure(figsize=(width, HEIGHT + rows - 1), layout="constrained")
-    every = figure.subplots(
+    axes_grid = figure.subplots(
         1 + rows, len(axes), sharex="col", height_ratios=(2.3, *[1.0] * rows), squeeze=False
     )
-    every[0, 0].set_ylabel(ENERGY_RATIO)
-    panels = [Panel(*column) for column in zip(every[0], every[1:].T, axes, strict=True)]
+    axes_grid[0, 0].set_ylabel(ENERGY_RATIO)
+    panels = [Panel(*column) for column in zip(axes_grid[0], axes_grid[1:].T, axes, strict=True)]
     for main, residuals, axis in panels:
-        main.sharey(every[0, 0])
+        main.sharey(axes_grid[0, 0])
         main.label_outer()
         main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=DOTS, zorder=0)
         for residual in residuals:
             residual.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
             residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.prepare(residuals[-1])
-    for residual in every[1:, 0]:
+    for residual in axes_grid[1:, 0]:
         residual.set_ylabel(r"$R - R_\mathrm{theory}$")
     figure.align_ylabels()
     return figure, panels
 
 
 def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> None:
-    """Draw the predicted R of each series along the axis: in its look, or black."""
-    for one in drawn:
-        colour, line = (THEORY, "-") if black else (one.look.colour, one.look.line)
-        predicted = one.predict(**{panel.axis.name: panel.axis.grid})
+    """Draw into `panel` the R of theory of each series in `drawn` along the axis: in its line
+    style, or black."""
+    for curve in drawn:
+        colour, line = (THEORY, "-") if black else (curve.line_style.colour, curve.line_style.line)
+        predicted = curve.predict(**{panel.axis.name: panel.axis.grid})
         predicted = np.broadcast_to(predicted, panel.axis.grid.shape)  # constant along some axes
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
 def draw_series(panel: Panel, drawn: Sequence[Series], averages: Sequence[str] = ("R",)) -> None:
-    """Draw points with error bars above, and beneath what they differ from theory by."""
-    for index, one in enumerate(drawn):
-        size = 4.2 - 0.3 * index  # none hides another
-        draw_points(panel.main, one, one.at, one.data.R.values, size)
+    """Draw into `panel` the points of each series in `drawn` with error bars, and their residuals
+    beneath, a row for each of `averages`."""
+    for index, curve in enumerate(drawn):
+        size = 4.2 - 0.3 * index  # later symbols hide no earlier ones
+        draw_points(panel.main, curve, curve.x, curve.data.R.values, size)
         for average, residual in zip(averages, panel.residuals, strict=True):
-            if average in one.data:
-                draw_points(residual, one, one.at, one.residual_of(average), size - 0.6, average)
+            if average in curve.data:
+                draw_points(
+                    residual, curve, curve.x, curve.residual_of(average), size - 0.6, average
+                )
 
 
 def frame_rows(
     panel: Panel, drawn: Sequence[Series], scale: Sequence[Series], averages: Sequence[str]
 ) -> None:
-    """Scale residuals to steady points of `scale`; say which average, and how many lie outside."""
+    """Set the limits of the rows of residuals, a row for each of `averages`, and write their
+    titles.
+
+    The limits span the steady points of the series in `scale`. A title has the average of R, and
+    the number of points of the series in `drawn` outside of the limits.
+    """
     heights = []
     for average, residual in zip(averages, panel.residuals, strict=True):
-        away = np.concatenate([one.residual_of(average) for one in drawn if average in one.data])
-        low, high = _limits(away, scale, average)
+        residuals = np.concatenate(
+            [curve.residual_of(average) for curve in drawn if average in curve.data]
+        )
+        low, high = _residual_limits(residuals, scale, average)
         residual.set_ylim(low, high)
         heights.append(high - low)
-        beyond = {"above": np.sum(away > high), "below": np.sum(away < low)}
-        notes = [f"{n} point{'s' if n > 1 else ''} {where}" for where, n in beyond.items() if n]
+        outside = {"above": np.sum(residuals > high), "below": np.sum(residuals < low)}
+        notes = [f"{n} point{'s' if n > 1 else ''} {side}" for side, n in outside.items() if n]
         if notes:
             note = f"{', '.join(notes)} this scale"
             residual.set_title(note, fontsize=7, color=GREY, loc="right", pad=2)
@@ -278,118 +335,151 @@ def frame_rows(
             residual.set_title(f"{AVERAGES[average]}{finer}", fontsize=7.5, loc="left", pad=2)
 
 
-def _limits(away, scale, average) -> tuple[float, float]:
-    """Return what spans the steady points of `scale`, and halves no symbol of those at `away`."""
+def _residual_limits(residuals, scale, average) -> tuple[float, float]:
+    """Return the limits (low, high) of a row of residuals (an array): they span the steady points
+    of the series in `scale` with the errors of `average`, and cut through no symbol."""
     low, high = -0.005, 0.005
-    for one in (one for one in scale if average in one.data):
-        middle, bar = one.residual_of(average), np.nan_to_num(one.error_of(average))
-        low = np.nanmin((middle - bar)[one.steady], initial=low)
-        high = np.nanmax((middle + bar)[one.steady], initial=high)
-    room = 0.12 * (high - low)
-    low, high = low - room, high + room
-    for value in np.sort(away):
-        high = value + room / 2 if abs(value - high) < room / 2 else high
-    for value in np.sort(away)[::-1]:
-        low = value - room / 2 if abs(value - low) < room / 2 else low
+    for curve in (curve for curve in scale if average in curve.data):
+        deviation, error = curve.residual_of(average), np.nan_to_num(curve.error_of(average))
+        low = np.nanmin((deviation - error)[curve.steady], initial=low)
+        high = np.nanmax((deviation + error)[curve.steady], initial=high)
+    margin = 0.12 * (high - low)
+    low, high = low - margin, high + margin
+    for value in np.sort(residuals):
+        high = value + margin / 2 if abs(value - high) < margin / 2 else high
+    for value in np.sort(residuals)[::-1]:
+        low = value - margin / 2 if abs(value - low) < margin / 2 else low
     return low, high
 
 
 def add_legend(
-    main: Axes, drawn: Sequence[Series], theory: str = "", known: Container = (), **how: Any
+    main: Axes, drawn: Sequence[Series], theory: str = "", explained: Container = (), **options: Any
 ) -> None:
-    """Say what points and lines are, but for labels that are `known` from panels before.
+    """Add to the axes `main` a legend of points and lines, without the labels in `explained`, which
+    earlier panels have.
 
-    `theory` names a black line; without it each series has its own. `loc` "half" is beneath the
-    line at 1/2, "outside" beside the panel.
+    `theory` is the label of a black line; if empty, each series has its own line. `options` are
+    matplotlib's, but `loc` "half" puts the legend beneath the line at R = 1/2, "outside" beside the
+    panel.
     """
-    line = "none" if theory else None
-    keys: list[Any] = [
-        key(one.look.colour, _mark(one), one.look.marker, line or one.look.line) for one in drawn
+    line_style = "none" if theory else None
+    entries: list[Any] = [
+        key(
+            curve.line_style.colour,
+            _legend_label(curve),
+            curve.line_style.marker,
+            line_style or curve.line_style.line,
+        )
+        for curve in drawn
     ]
-    keys += [key(THEORY, theory, "", "-")] if theory else []
-    keys += [key(FAINT, "equipartition", "", DOTS), *main.get_legend_handles_labels()[0]]
-    keys = [one for one in keys if one.get_label() not in known]
-    if how.get("loc") == "half":
+    entries += [key(THEORY, theory, "", "-")] if theory else []
+    entries += [key(FAINT, "equipartition", "", DOTS), *main.get_legend_handles_labels()[0]]
+    entries = [entry for entry in entries if entry.get_label() not in explained]
+    if options.get("loc") == "half":
         low, high = main.get_ylim()
-        how |= {"bbox_to_anchor": (0.0, (0.5 - low) / (high - low)), "borderaxespad": 0.8}
-    elif how.get("loc") == "outside":
-        how |= {"bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
-    how |= {"loc": "upper left"} if "bbox_to_anchor" in how else {}
-    if keys or how.get("title"):
-        main.legend(handles=keys, **how)
+        options |= {"bbox_to_anchor": (0.0, (0.5 - low) / (high - low)), "borderaxespad": 0.8}
+    elif options.get("loc") == "outside":
+        options |= {"bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
+    options |= {"loc": "upper left"} if "bbox_to_anchor" in options else {}
+    if entries or options.get("title"):
+        main.legend(handles=entries, **options)
 
 
 def add_notes(figure: Figure, drawn: Sequence[Series]) -> None:
-    """Say below the figure what open and half filled symbols and a dagger are, if there are any."""
-    keys = keys_of_steadiness(drawn)
-    if any(one.touched.any() for one in drawn):
-        keys.append(key(GREY, "contact-time model acted", f"${TOUCHED}$"))
-    if keys:
-        figure.legend(handles=keys, loc="outside lower right", ncols=len(keys), columnspacing=1.0)
+    """Explain open and half filled symbols and the dagger below the figure, if the series in
+    `drawn` have any."""
+    entries = keys_of_steadiness(drawn)
+    if any(curve.contact_time_acted.any() for curve in drawn):
+        entries.append(key(GREY, "contact-time model acted", f"${CONTACT_TIME_MARK}$"))
+    if entries:
+        figure.legend(
+            handles=entries, loc="outside lower right", ncols=len(entries), columnspacing=1.0
+        )
 
 
 def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
-    """Return what open and half filled symbols are, if there are any."""
-    keys = []
-    if any((one.known & ~one.steady).any() for one in drawn):
-        keys.append(key(GREY, "open: not steady", "o", **NOT_STEADY))
-    if not all(one.known.all() for one in drawn):
-        keys.append(key(GREY, "half: not known", "o", **NOT_KNOWN))
-    return keys
+    """Return legend entries for open and half filled symbols, as far as the series in `drawn` have
+    any."""
+    entries = []
+    if any((curve.steadiness_known & ~curve.steady).any() for curve in drawn):
+        entries.append(key(GREY, "open: not steady", "o", **NOT_STEADY))
+    if not all(curve.steadiness_known.all() for curve in drawn):
+        entries.append(key(GREY, "half: not known", "o", **NOT_KNOWN))
+    return entries
 
 
 NOT_TRUSTED: Style = {"alpha": 0.4}
 
 
 def trusted(data: xr.Dataset, name: str) -> xr.DataArray:
-    """Return where the error of a variable of an observable is trusted, in the shape of that: by
-    flags of a point, or shares of seeds. Everywhere in datasets without either."""
+    """Return a mask of the values of the variable `name` of an observable whose errors are trusted,
+    in the variable's shape.
+
+    It comes from the flags of a point, or from shares of seeds; without either it is all True.
+    """
     flags = data.get(f"{name}_trusted", xr.ones_like(data[name]))
-    return flags > EQUILIBRATED
+    return flags > STEADY_SHARE
 
 
 def key_of_trust() -> Line2D:
-    """Return what paler symbols are."""
+    """Return the legend entry for paler symbols."""
     return key(GREY, "paler: the error is not trusted", "o", **NOT_TRUSTED)
 
 
-def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: str = "") -> None:
-    """Write above what one learns, what is shown, how large it is, and what error bars are."""
+def add_title(main: Axes, datasets: Sequence[xr.Dataset], subject: str, message: str = "") -> None:
+    """Write a title above the axes `main`: the subject, the number of particles and the meaning of
+    error bars of `datasets` (reduced), and the message above it."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
     bars = f"standard error, {seeds}" if high > 1 else "standard error within the run"
-    about = datasets[0].attrs
-    scale = "" if about["scale"] == "paper" else f"\nScale: {about['scale']}"
+    attributes = datasets[0].attrs
+    scale = "" if attributes["scale"] == "paper" else f"\nScale: {attributes['scale']}"
     number = particles_of(datasets[0]).replace(" to ", "$ to $")
-    text = f"{what}, $N = {number}$\nBars: {bars}{scale}"
+    text = f"{subject}, $N = {number}$\nBars: {bars}{scale}"
     main.set_title(text, fontsize=7.5, loc="left")
     if message:
-        place: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}
+        coordinates: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}
         height = 10 * len(text.splitlines()) + 6
-        main.annotate(message, (0, 1), (0, height), fontsize=8.5, fontweight="bold", **place)
+        main.annotate(message, (0, 1), (0, height), fontsize=8.5, fontweight="bold", **coordinates)
 
 
 def draw_points(
     axes: Axes,
-    one: Series,
-    at: np.ndarray,
+    curve: Series,
+    x: np.ndarray,
     values: np.ndarray,
     size: float = 3.6,
     average: str = "R",
 ) -> None:
-    """Draw symbols: filled in a steady state, open in none, half filled where it is not known."""
-    common: Style = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8}
-    looks: Any = (one.steady, {}), (one.known & ~one.steady, NOT_STEADY), (~one.known, NOT_KNOWN)
-    for part, look in looks:
-        bars = one.error_of(average)[part]
-        axes.errorbar(at[part], values[part], bars, ms=size, capsize=1.5, **common, **look)
+    """Draw the points of a series with error bars: filled if steady, open if not, half filled if
+    not known.
+
+    `x` and `values` are (n,), `size` is the size of symbols in points (1/72 inch). The error bars
+    are the standard errors of the variable `average`, an average of R.
+    """
+    common: Style = {
+        "color": curve.line_style.colour,
+        "fmt": curve.line_style.marker,
+        "elinewidth": 0.8,
+    }
+    variants: Any = (
+        (curve.steady, {}),
+        (curve.steadiness_known & ~curve.steady, NOT_STEADY),
+        (~curve.steadiness_known, NOT_KNOWN),
+    )
+    for mask, marker_style in variants:
+        bars = curve.error_of(average)[mask]
+        axes.errorbar(x[mask], values[mask], bars, ms=size, capsize=1.5, **common, **marker_style)
 
 
-def _mark(one: Series) -> str:
-    return one.label + (TOUCHED if one.touched.any() else "")
+def _legend_label(curve: Series) -> str:
+    """Return the label of a series in a legend, with a dagger if the contact-time model altered
+    contacts."""
+    return curve.label + (CONTACT_TIME_MARK if curve.contact_time_acted.any() else "")
 
 
-def key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
-    """Return an entry of a legend."""
-    return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
+def key(colour: str, label: str, marker: str, linestyle: Any = "none", **options: Any) -> Line2D:
+    """Return a legend entry: a line with a marker and a label; `options` are further properties of
+    matplotlib's Line2D."""
+    return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **options)

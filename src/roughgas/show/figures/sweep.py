@@ -1,5 +1,10 @@
-"""Any dataset as a figure: R of a reduced one over an axis, or a point over time, beside theory;
-what observables have found in a point."""
+"""Figures of single datasets: R of a reduced dataset over an axis, time series of a point, and
+results of observables.
+
+R = E_rot/(E_rot + E_trans), from energies per degree of freedom; r is the normal restitution, beta
+the roughness. `over` is the name of the coordinate on the horizontal axis, `chosen` has values to
+show by coordinate (r, beta).
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,18 +16,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from roughgas.base import InputError, not_one_of
+from roughgas.base import InputError, Record, unknown_name_error
 from roughgas.data.netcdf import unit_of
-from roughgas.data.reduced import GRID, third_axis
-from roughgas.data.variables import CLOCKS, ENERGY, START
+from roughgas.data.reduced import GRID_DIMS
+from roughgas.data.variables import CLOCKS, ENERGY, START, third_axis
 from roughgas.show.figures import panel
 from roughgas.show.figures.panel import series
-from roughgas.show.style import GREY, HEIGHT, LOOKS, THEORY, TWO_WIDE, WIDTH, Style
+from roughgas.show.style import GREY, HEIGHT, LINE_STYLES, THEORY, TWO_WIDE, WIDTH, Style
 from roughgas.statistics.errors import Estimate, block_means
 from roughgas.theory.prediction import equation_of
 
-MOST_SERIES, MOST_PANELS = len(LOOKS), 3
-KNOWN = {axis.name: axis for axis in (panel.BETA, panel.FRICTION, panel.INERTIA, panel.ROUGHNESS)}
+MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 3
+AXES = {axis.name: axis for axis in (panel.BETA, panel.FRICTION, panel.INERTIA, panel.ROUGHNESS)}
 LABELS = {
     "r": "normal restitution $r$",
     "particles": "number of particles $N$",
@@ -30,13 +35,14 @@ LABELS = {
     "spin_share": panel.SHARE_LABEL,
 }
 SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
-MARGIN = 0.08  # of an axis, beside the data
-LEGEND = 1.6  # inches beside the panels
-WIDE_RANGE = 20.0  # between the ends of an axis that is logarithmic
+MARGIN = 0.08  # beside the data, as a share of the axis
+LEGEND_WIDTH = 1.6  # inches, beside the panels
+WIDE_RANGE = 20.0  # ratio of largest to smallest value above which an axis is logarithmic
 
 
 class Layout(NamedTuple):
-    """What is drawn along the axis, as series, and as panels; and the chosen values of the rest."""
+    """Names of the coordinates of the horizontal axis, of series and of panels (None for a single
+    panel), and the values of the last two by name."""
 
     over: str
     series: str
@@ -45,90 +51,103 @@ class Layout(NamedTuple):
 
 
 def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -> Figure:
-    """Draw R of a reduced dataset, or E_trans where nothing spins.
+    """Draw R of a reduced dataset, or E_trans if particles do not spin, and return the figure.
 
-    `over` is the horizontal axis: the third axis of the sweep if there is one, else beta. `chosen`
-    are values of r or beta to show. Raises InputError for axes and values that the data lack.
+    `over` is the horizontal axis, by default the third axis of the sweep, or else beta; `chosen`,
+    values of r or beta to show. Raises InputError for axes and values that the data lack.
     """
-    layout = arranged(data, over, chosen)
-    data = data.sel({layout.over: _picked(data, layout.over, chosen.get(layout.over))})
-    shown, axis = _numbered(data, layout.over)
+    layout = layout_of(data, over, chosen)
+    data = data.sel({layout.over: _chosen_values(data, layout.over, chosen.get(layout.over))})
+    numeric, axis = _with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
-    places = [{layout.panels: value} if layout.panels else {} for value in panels]
+    selections = [{layout.panels: value} if layout.panels else {} for value in panels]
     width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
     if "R" not in data:
-        return _energies(shown, layout, axis, places, width)
-    parts = [_content(shown, layout, axis, place, place is places[-1]) for place in places]
-    figure = panel.ratio_figure(*parts, width=width + LEGEND, averages=panel.averages_of(shown))
-    _name_words(figure, data, layout.over)
+        return _energy_figure(numeric, layout, axis, selections, width)
+    contents = [
+        _panel_content(numeric, layout, axis, selection, selection is selections[-1])
+        for selection in selections
+    ]
+    contents[0] = contents[0]._replace(message=_drawn(numeric, "R", layout.over))
+    figure = panel.ratio_figure(
+        *contents, width=width + LEGEND_WIDTH, averages=panel.averages_of(numeric)
+    )
+    _label_words(figure, data, layout.over)
     return figure
 
 
-def arranged(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]) -> Layout:
-    """Return how a dataset is drawn: at most MOST_SERIES series in each of MOST_PANELS panels.
+def layout_of(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]) -> Layout:
+    """Return the layout of a figure of a reduced dataset: at most MAX_PANELS panels, of at most
+    MAX_SERIES series each.
 
-    Where there are more, those shown are spread evenly over all.
+    Of more values an evenly spaced selection is drawn. Raises InputError as `draw`.
     """
     third = third_axis(data.attrs)
-    names = [name for name in (third, *GRID) if name]
+    names = [name for name in (third, *GRID_DIMS) if name]
     over = over or third or "beta"
     if over not in names:
-        raise not_one_of("axis", over, names)
-    rest = [name for name in ("beta", third, "r") if name and name != over]
-    values = {name: _picked(data, name, chosen.get(name)) for name in rest}
-    # the one with most values as series, the other as panels
-    rest.sort(key=lambda name: len(values[name]), reverse=True)
-    few = {}
-    for name, most in zip(rest, (MOST_SERIES, MOST_PANELS), strict=False):
+        raise unknown_name_error("axis", over, names)
+    other_axes = [name for name in ("beta", third, "r") if name and name != over]
+    values = {name: _chosen_values(data, name, chosen.get(name)) for name in other_axes}
+    # the coordinate with more values becomes series, the other one panels
+    other_axes.sort(key=lambda name: len(values[name]), reverse=True)
+    chosen_few = {}
+    for name, limit in zip(other_axes, (MAX_SERIES, MAX_PANELS), strict=False):
         last = len(values[name]) - 1
-        chosen_ones = np.linspace(0, last, min(most, last + 1)).round().astype(int)
-        few[name] = [values[name][k] for k in chosen_ones]
-    return Layout(over, rest[0], rest[1] if len(rest) > 1 else None, few)
+        indices = np.linspace(0, last, min(limit, last + 1)).round().astype(int)
+        chosen_few[name] = [values[name][k] for k in indices]
+    return Layout(over, other_axes[0], other_axes[1] if len(other_axes) > 1 else None, chosen_few)
 
 
-def left_out(
+def coordinates_not_shown(
     data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]
 ) -> list[str]:
-    """Return a line for each coordinate of which not all values are drawn. Raises InputError."""
+    """Return a message for each coordinate of a reduced dataset whose values are not all drawn.
+    Raises InputError as `draw`."""
     lines = []
-    for name, shown in arranged(data, over, chosen).values.items():
-        if len(shown) < data.sizes[name]:
-            some = ", ".join(_text(value) for value in shown)
-            lines.append(f"{len(shown)} of {data.sizes[name]} values of {name} are shown: {some}")
+    for name, drawn in layout_of(data, over, chosen).values.items():
+        if len(drawn) < data.sizes[name]:
+            values = ", ".join(_value_text(value) for value in drawn)
+            lines.append(f"{len(drawn)} of {data.sizes[name]} values of {name} are shown: {values}")
     return lines
 
 
-def _picked(data: xr.Dataset, name: str, wanted: Sequence[float] | None) -> list[Any]:
-    """Return the values on an axis that are wanted, by default all."""
-    known = data[name].values.tolist()
-    for value in wanted or ():
-        if value not in known:
-            raise InputError(name, value, f"be one of {', '.join(map(_text, known))}")
-    return list(wanted or known)
+def _chosen_values(data: xr.Dataset, name: str, chosen: Sequence[float] | None) -> list[Any]:
+    """Return the chosen values of the coordinate `name`, by default all. Raises InputError for
+    values that the data lack."""
+    available = data[name].values.tolist()
+    for value in chosen or ():
+        if value not in available:
+            raise InputError(name, value, f"be one of {', '.join(map(_value_text, available))}")
+    return list(chosen or available)
 
 
-def _numbered(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
-    """Return the data with numbers along the axis, in place of words, and the axis."""
-    values, known = data[over].values, KNOWN.get(over)
-    label = known.label if known else LABELS.get(over, over.replace("_", " "))
+def _with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
+    """Return the data with words on the coordinate `over` replaced by their numbers, and the
+    horizontal axis."""
+    values, predefined = data[over].values, AXES.get(over)
+    label = predefined.label if predefined else LABELS.get(over, over.replace("_", " "))
     if values.dtype.kind not in "fiu":
-        ends = -0.5, len(values) - 0.5
+        limits = -0.5, len(values) - 0.5
         numbered = data.assign_coords({over: np.arange(len(values))})
-        return numbered, panel.Axis(over, label, ends, ends)
+        return numbered, panel.Axis(over, label, limits, limits)
     if over == "beta":
         return data, panel.BETA
     low, high = float(values.min()), float(values.max())
-    wide = low > 0.0 and high / low > (1.0 if known and known.logarithmic else WIDE_RANGE)
-    if wide:
-        ends = low * (low / high) ** MARGIN, high * (high / low) ** MARGIN
+    logarithmic = low > 0.0 and high / low > (
+        1.0 if predefined and predefined.logarithmic else WIDE_RANGE
+    )
+    if logarithmic:
+        limits = low * (low / high) ** MARGIN, high * (high / low) ** MARGIN
     else:
-        room = MARGIN * (high - low) or MARGIN * abs(high) or 1.0
-        ends = low - room, high + room
-    return data, panel.Axis(over, label, ends, (low, high) if high > low else ends, wide)
+        margin = MARGIN * (high - low) or MARGIN * abs(high) or 1.0
+        limits = low - margin, high + margin
+    return data, panel.Axis(over, label, limits, (low, high) if high > low else limits, logarithmic)
 
 
-def _name_words(figure: Figure, data: xr.Dataset, over: str) -> None:
-    """Write the words of an axis below it, in place of their numbers."""
+def _label_words(figure: Figure, data: xr.Dataset, over: str) -> None:
+    """Label the horizontal axes of a figure with the words of the coordinate `over`, in place of
+    their numbers."""
     words = data[over].values
     if words.dtype.kind in "fiu":
         return
@@ -137,198 +156,267 @@ def _name_words(figure: Figure, data: xr.Dataset, over: str) -> None:
         axes.xaxis.minorticks_off()
 
 
-def _content(
-    data: xr.Dataset, layout: Layout, axis: panel.Axis, place: Mapping[str, Any], last: bool
+def _panel_content(
+    data: xr.Dataset, layout: Layout, axis: panel.Axis, selection: Record, last: bool
 ) -> panel.PanelContent:
+    """Return the content of the panel at `selection`, values by coordinate; only the `last` panel
+    has a legend."""
     drawn = [
-        series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
-        for value, look in zip(layout.values[layout.series], LOOKS, strict=False)
+        series(
+            data, _label(layout.series, value), line_style, **{layout.series: value}, **selection
+        )
+        for value, line_style in zip(layout.values[layout.series], LINE_STYLES, strict=False)
     ]
-    how: Style = {
+    options: Style = {
         "theories": f"lines: {equation_of(data.attrs).name}",
         "legend": {"loc": "outside"} if last else {},
         "axis": axis,
     }
-    return panel.PanelContent(_title(data, place), [data], drawn, **how)
+    return panel.PanelContent(_title(data, selection), [data], drawn, **options)
 
 
-def _energies(data, layout, axis, places, width) -> Figure:
-    """Draw the energy of a gas whose particles do not spin."""
+def _energy_figure(data, layout, axis, selections, width) -> Figure:
+    """Return a figure of E_trans of a gas whose particles do not spin, a panel for each of
+    `selections`, values by coordinate.
+
+    `axis` is the horizontal axis, `width` is in inches.
+    """
     figure = Figure(figsize=(width, 0.7 * HEIGHT), layout="constrained")
-    every = figure.subplots(1, len(places), sharey=True, squeeze=False)[0]
-    for axes, place in zip(every, places, strict=True):
-        for value, look in zip(layout.values[layout.series], LOOKS, strict=False):
-            row = data.sel({layout.series: value, **place})
+    panels = figure.subplots(1, len(selections), sharey=True, squeeze=False)[0]
+    for axes, selection in zip(panels, selections, strict=True):
+        for value, line_style in zip(layout.values[layout.series], LINE_STYLES, strict=False):
+            row = data.sel({layout.series: value, **selection})
             error = row.get("E_trans_stderr", np.nan * row.E_trans)
-            style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5}
+            style = {"color": line_style.colour, "fmt": line_style.marker, "capsize": 1.5}
             label = _label(layout.series, value)
             axes.errorbar(row[layout.over], row.E_trans, error, label=label, **style)
         axis.prepare(axes)
         axes.legend()
-        panel.add_title(axes, [data], _title(data, place))
-    every[0].set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
+        message = _drawn(data, "Energy", layout.over) if selection is selections[0] else ""
+        panel.add_title(axes, [data], _title(data, selection), message)
+    panels[0].set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
     return figure
 
 
-def _title(data: xr.Dataset, place: Mapping[str, Any]) -> str:
-    name = data.attrs["experiment"].replace("_", " ")
-    return ", ".join([f"{name[0].upper()}{name[1:]}", *(_label(*one) for one in place.items())])
+def _drawn(data: xr.Dataset, quantity: str, over: str) -> str:
+    """Return the title of a figure, which names what is drawn: a quantity over the coordinate
+    `over`, and the theory if the quantity is R."""
+    symbol = SYMBOLS.get(over)
+    axis = f"${symbol}$" if symbol else over.replace("_", " ")
+    theory = equation_of(data.attrs).name if quantity == "R" else ""
+    return f"{quantity} over {axis}" + (f", beside {theory}" if theory else "")
+
+
+def _title(data: xr.Dataset, selection: Record) -> str:
+    """Return the title of a panel: the experiment, and the values in `selection` by coordinate.
+
+    An experiment of a study is called by its key, and by the study unless this has the same name.
+    """
+    study, _, key = data.attrs["experiment"].rpartition(".")
+    name = (key if study in ("", key) else f"{study}: {key}").replace("_", " ")
+    return ", ".join(
+        [f"{name[0].upper()}{name[1:]}", *(_label(*coordinate) for coordinate in selection.items())]
+    )
 
 
 def _label(name: str, value: Any) -> str:
+    """Return a coordinate's name and value as a label; a value that is a word stands alone."""
     if isinstance(value, str):
         return value.replace("_", " ")
     symbol = SYMBOLS.get(name)
     return rf"${symbol} = {value:g}$" if symbol else f"{name.replace('_', ' ')} {value:g}"
 
 
-def _text(value: Any) -> str:
+def _value_text(value: Any) -> str:
+    """Return the value of a coordinate, a number or a word, as text."""
     return value if isinstance(value, str) else f"{value:g}"
 
 
-TIMELINE, LINES = (6.0, 4.6), (6.0, 3.2)  # inches
-MOST_PLACES = 400  # places along a line
-WINDOW = "#eeeeee"
+TIME_SERIES_SIZE, OBSERVABLE_SIZE = (6.0, 4.6), (6.0, 3.2)  # inches
+MAX_TIMES = 400  # of a line; longer series are drawn as means over blocks
+WINDOW_COLOUR = "#eeeeee"
 ENERGIES = {"E_trans": r"$E_\mathrm{trans}$", "E_rot": r"$E_\mathrm{rot}$"}
 UNITS = {START: r"initial $E_\mathrm{trans}$", ENERGY: r"($m a^2/T^2$)"}
-TRUST = {0: ", not trusted", -1: ", whether to trust it is not known"}
+TRUST_NOTES = {0: ", not trusted", -1: ", whether to trust it is not known"}
 
 
 def draw_point(point: xr.Dataset, theory: float) -> Figure:
-    """Draw the time series of a point, the window in which it is measured shaded.
+    """Draw R and the energies of a point over time, with the window of the measurement shaded, and
+    return the figure.
 
-    `theory` is R of theory; NaN for none. A series of many samples is drawn as means over blocks.
+    `theory` is R of theory, NaN for none. Long series are drawn as means over blocks.
     """
     clock = next(name for name in CLOCKS[::-1] if name in point)
     cooling, spins = clock == "collisions_per_particle", "R_series" in point
-    at = point[clock].values
-    window = float(point.measured_from), float(point.get("plateau_end", at[-1]))
-    block = math.ceil(at.size / MOST_PLACES)
-    figure = Figure(figsize=TIMELINE, layout="constrained")
-    every = figure.subplots(1 + spins, 1, sharex=True, squeeze=False)[:, 0]
-    for axes in every:
-        axes.axvspan(*window, color=WINDOW, zorder=0)
-        axes.set_xlim(at[0] - (at[-1] - at[0]) / 50, at[-1] + (at[-1] - at[0]) / 50)
+    times = point[clock].values
+    window = float(point.measured_from), float(point.get("plateau_end", times[-1]))
+    block = math.ceil(times.size / MAX_TIMES)
+    figure = Figure(figsize=TIME_SERIES_SIZE, layout="constrained")
+    panels = figure.subplots(1 + spins, 1, sharex=True, squeeze=False)[:, 0]
+    for axes in panels:
+        axes.axvspan(*window, color=WINDOW_COLOUR, zorder=0)
+        axes.set_xlim(
+            times[0] - (times[-1] - times[0]) / 50, times[-1] + (times[-1] - times[0]) / 50
+        )
     if spins:
-        _ratio_over_time(every[0], point, theory, at, block, window)
-    _energies_over_time(every[-1], point, at, block, cooling)
-    every[-1].set_xlabel("collisions per particle" if cooling else "time / $T$")
+        _ratio_over_time(panels[0], point, theory, times, block, window)
+    _energies_over_time(panels[-1], point, times, block, cooling)
+    panels[-1].set_xlabel("collisions per particle" if cooling else "time / $T$")
     title = f"{title_of_point(point)}\nshaded: where R is measured"
     averaged = f"; lines: means over {block} samples" if block > 1 else ""
-    every[0].set_title(title + averaged, fontsize=8)
+    panels[0].set_title(title + averaged, fontsize=8)
     return figure
 
 
-def _ratio_over_time(axes: Axes, point, theory, at, block, window) -> None:
-    look, R, half = LOOKS[0], float(point.R), float(point.R_ci95)
-    shown = block_means(point.R_series.values, block)
-    axes.plot(block_means(at, block), shown, color=look.colour, linewidth=0.8, label="$R(t)$")
+def _ratio_over_time(axes: Axes, point, theory, times, block, window) -> None:
+    """Draw R over time into `axes`, with its mean, its 95 % interval, and R of theory (`theory`,
+    NaN for none).
+
+    `times` and R(t) are drawn as means over `block` samples; `window` has the first and the last
+    time of the measurement.
+    """
+    line_style, R, half = LINE_STYLES[0], float(point.R), float(point.R_ci95)
+    ratios = block_means(point.R_series.values, block)
+    axes.plot(
+        block_means(times, block), ratios, color=line_style.colour, linewidth=0.8, label="$R(t)$"
+    )
     mean = Estimate(R, float(point.R_stderr))
-    trust = TRUST.get(int(point.get("R_ci95_trusted", 1)), "")
-    axes.plot(window, (R, R), color=LOOKS[1].colour, label=f"mean of $R(t)$: {mean}")
+    trust = TRUST_NOTES.get(int(point.get("R_ci95_trusted", 1)), "")
+    axes.plot(window, (R, R), color=LINE_STYLES[1].colour, label=f"mean of $R(t)$: {mean}")
     band: Style = {"alpha": 0.3, "linewidth": 0.0, "label": f"95 % interval{trust}"}
-    axes.fill_between(window, R - half, R + half, color=LOOKS[1].colour, **band)
+    axes.fill_between(window, R - half, R + half, color=LINE_STYLES[1].colour, **band)
     if "R_collisional" in point:
-        found = Estimate(float(point.R_collisional), float(point.R_collisional_stderr))
-        about: Style = {"color": LOOKS[2].colour, "linestyle": LOOKS[2].line}
-        axes.plot(window, [found.value] * 2, label=f"over collisions: {found}", **about)
+        collisional = Estimate(float(point.R_collisional), float(point.R_collisional_stderr))
+        style: Style = {"color": LINE_STYLES[2].colour, "linestyle": LINE_STYLES[2].line}
+        axes.plot(window, [collisional.value] * 2, label=f"over collisions: {collisional}", **style)
     if math.isfinite(theory):
         name = equation_of(point.attrs, point).name
         axes.axhline(theory, color=THEORY, linestyle="--", label=f"{name}: {theory:.4f}")
-    levels = [*shown[np.isfinite(shown)], R - half, R + half, theory]
+    levels = [*ratios[np.isfinite(ratios)], R - half, R + half, theory]
     low, high = np.nanmin(levels), np.nanmax(levels)
-    room = 0.05 * ((high - low) or 0.1)
-    axes.set(ylabel="$R$", ylim=(low - room, high + room))
+    margin = 0.05 * ((high - low) or 0.1)
+    axes.set(ylabel="$R$", ylim=(low - margin, high + margin))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
-def _energies_over_time(axes: Axes, point, at, block, cooling) -> None:
-    for (name, label), look in zip(ENERGIES.items(), LOOKS, strict=False):
+def _energies_over_time(axes: Axes, point, times, block, cooling) -> None:
+    """Draw both energies of a point into `axes`, as means over `block` samples at `times`; on a
+    logarithmic axis for a `cooling` gas."""
+    for (name, label), line_style in zip(ENERGIES.items(), LINE_STYLES, strict=False):
         if f"{name}_series" in point:
             values = block_means(point[f"{name}_series"].values, block)
-            style: Style = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9}
-            axes.plot(block_means(at, block), values, label=label, **style)
+            style: Style = {
+                "color": line_style.colour,
+                "linestyle": line_style.line,
+                "linewidth": 0.9,
+            }
+            axes.plot(block_means(times, block), values, label=label, **style)
     unit = UNITS.get(unit_of(point.E_trans.attrs), "1")
     axes.set_ylabel(f"energy per degree of\nfreedom / {unit}")
     axes.set_yscale("log" if cooling else "linear")
-    if axes.lines:  # a point that was shortened may have none
+    if axes.lines:  # a shortened dataset may lack them
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
 def title_of_point(point: xr.Dataset) -> str:
-    """Return what a point is of."""
-    about = point.attrs
-    name = "/".join(about[key] for key in ("experiment", "variant") if key in about)
-    place = rf"$r = {about['r']:g}$, $\beta = {about['beta']:g}$"
-    return f"{name.replace('_', ' ')}: {place}, $N = {about['particles']}$, seed {about['seed']}"
+    """Return a title: experiment, r, beta, number of particles and seed of a point."""
+    attrs = point.attrs
+    name = "/".join(attrs[key] for key in ("experiment", "variant") if key in attrs)
+    position = rf"$r = {attrs['r']:g}$, $\beta = {attrs['beta']:g}$"
+    return f"{name.replace('_', ' ')}: {position}, $N = {attrs['particles']}$, seed {attrs['seed']}"
 
 
 def draw_observed(point: xr.Dataset, name: str) -> Figure:
-    """Draw what an observable has found in a point over a coordinate, a line for each species or
-    pair, with one standard error to either side, paler where that is not trusted.
+    """Draw a point's variable `name` of an observable over its numeric coordinate, a line per
+    species or pair, and return the figure.
 
-    Raises InputError for a variable that is over no numbers.
+    Bands are one standard error wide to either side, paler if the error is not trusted. Raises
+    InputError for a variable without a numeric coordinate.
     """
-    known = {str(one): axis for one in point.data_vars if (axis := _axis(point, one))}
-    if name not in known:
-        shown = [one for one in known if f"{one}_stderr" in point]
-        raise not_one_of("--of", name, shown or known)
-    axis = known[name]
-    figure = Figure(figsize=LINES, layout="constrained")
+    axes_of_variables = {
+        str(variable): axis
+        for variable in point.data_vars
+        if (axis := _numeric_axis(point, variable))
+    }
+    if name not in axes_of_variables:
+        observed = [variable for variable in axes_of_variables if f"{variable}_stderr" in point]
+        raise unknown_name_error("--of", name, observed or axes_of_variables)
+    axis = axes_of_variables[name]
+    figure = Figure(figsize=OBSERVABLE_SIZE, layout="constrained")
     axes = figure.subplots()
-    at = point[axis].values
+    coordinate = point[axis].values
     values = point[name].transpose(..., axis)
     errors = point.get(f"{name}_stderr", values * np.nan).transpose(..., axis)
     trusted = panel.trusted(point, name).transpose(..., axis).values
-    for number, place in enumerate(_places_of(values)):
-        look = LOOKS[number % len(LOOKS)]
-        line, error = values.values[place], errors.values[place]
-        axes.plot(at, line, color=look.colour, linestyle=look.line, label=_line(values, place))
-        _draw_errors(axes, at, line, error, trusted[place], look.colour)
-    over, said = (one.replace("_", " ") for one in (axis, name.removesuffix("_species")))
-    axes.set(xlabel=f"{over}{_unit(point[axis])}", ylabel=f"{said}{_unit(values)}")
+    for number, index in enumerate(_line_indices(values)):
+        line_style = LINE_STYLES[number % len(LINE_STYLES)]
+        line, error = values.values[index], errors.values[index]
+        axes.plot(
+            coordinate,
+            line,
+            color=line_style.colour,
+            linestyle=line_style.line,
+            label=_line_label(values, index),
+        )
+        _draw_errors(axes, coordinate, line, error, trusted[index], line_style.colour)
+    coordinate_label, variable_label = (
+        variable.replace("_", " ") for variable in (axis, name.removesuffix("_species"))
+    )
+    axes.set(
+        xlabel=f"{coordinate_label}{_unit_suffix(point[axis])}",
+        ylabel=f"{variable_label}{_unit_suffix(values)}",
+    )
     axes.set_title(title_of_point(point), fontsize=8)
     if values.ndim > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     if not trusted.all():
-        note = Patch(color=GREY, label=panel.key_of_trust().get_label(), **DOUBTFUL)
+        note = Patch(color=GREY, label=panel.key_of_trust().get_label(), **DOUBTFUL_BAND)
         figure.legend(handles=[note], loc="outside lower right")
     return figure
 
 
 BAND: Style = {"alpha": 0.25, "linewidth": 0}
-DOUBTFUL: Style = {"alpha": 0.08, "linewidth": 0}
+DOUBTFUL_BAND: Style = {"alpha": 0.08, "linewidth": 0}
 
 
-def _draw_errors(axes: Axes, at, line, error, trusted, colour: str) -> None:
-    """Draw one standard error to either side of a line; paler from a value whose error is not
-    trusted to the next."""
+def _draw_errors(axes: Axes, coordinate, line, error, trusted, colour: str) -> None:
+    """Draw a band of one standard error (`error`) to either side of the values `line`, paler next
+    to values whose error is not trusted.
+
+    `coordinate`, `line`, `error` and the mask `trusted` have equal shapes, (n,).
+    """
     if not trusted.all():
-        axes.fill_between(at, line - error, line + error, color=colour, **DOUBTFUL)
-    axes.fill_between(at, line - error, line + error, where=trusted, color=colour, **BAND)
+        axes.fill_between(coordinate, line - error, line + error, color=colour, **DOUBTFUL_BAND)
+    axes.fill_between(coordinate, line - error, line + error, where=trusted, color=colour, **BAND)
 
 
-def _axis(point: xr.Dataset, name: Any) -> str | None:
-    """Return the last dimension of a variable that has numbers along it, None without any."""
+def _numeric_axis(point: xr.Dataset, name: Any) -> str | None:
+    """Return the last dimension of the variable `name` of a point that has numeric coordinates;
+    None without any."""
     dims = [str(dim) for dim in point[name].dims if dim in point.coords]
     return next((dim for dim in dims[::-1] if point[dim].dtype.kind in "fiu"), None)
 
 
-def _places_of(values: xr.DataArray) -> list[tuple[int, ...]]:
-    """Return the index of each line; of a pair of species in one of the two orders."""
-    places, dims = np.ndindex(values.shape[:-1]), values.dims
+def _line_indices(values: xr.DataArray) -> list[tuple[int, ...]]:
+    """Return the index of each line of a variable, over all dimensions but the last; pairs of
+    species are in one order only."""
+    indices, dims = np.ndindex(values.shape[:-1]), values.dims
     if "other" not in dims:
-        return list(places)
-    one, other = dims.index("species"), dims.index("other")
-    return [place for place in places if place[one] <= place[other]]
+        return list(indices)
+    first, second = dims.index("species"), dims.index("other")
+    return [index for index in indices if index[first] <= index[second]]
 
 
-def _line(values: xr.DataArray, place: tuple[int, ...]) -> str:
+def _line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
+    """Return the label of the line at `index` of a variable: its species, or other coordinates, by
+    name or number."""
     names = ["species" if dim == "other" else dim for dim in values.dims[:-1]]
-    pairs = zip(names, place, strict=True)
+    pairs = zip(names, index, strict=True)
     return ", ".join(str(values[n].values[k]) if n in values.coords else str(k) for n, k in pairs)
 
 
-def _unit(values: xr.DataArray) -> str:
+def _unit_suffix(values: xr.DataArray) -> str:
+    """Return the unit of a variable as the end of an axis label, such as " / a"; "" without a
+    unit."""
     unit = unit_of(values.attrs)
     return "" if unit in ("", "1") else f" / ({unit})" if " " in unit else f" / {unit}"

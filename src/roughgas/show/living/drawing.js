@@ -1,4 +1,4 @@
-// The gas and the graph, as they are drawn; and the colours of both.
+// Drawing of the gas and of the graph, and their colours.
 
 const SPINS = [[179, 88, 6], [241, 163, 64], [247, 247, 247], [153, 142, 195], [84, 39, 136]];
 
@@ -12,7 +12,7 @@ function colourOf(spin) {
   return `rgb(${SPINS[k].map((one, i) => Math.round(one + share * (SPINS[k + 1][i] - one))).join()})`;
 }
 
-// The part of the box that is seen: its height in a, and how much of it lies below the box.
+// The visible region: its height in a, and the share of it that lies below the box.
 function sight({ scene: { box: [width, height], shear, floor } }) {
   if (floor) return [1.4 * width, 1];
   return shear ? [1.3 * height, 0.15 * height] : [height, 0];

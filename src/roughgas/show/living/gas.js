@@ -1,26 +1,26 @@
-// Event-driven dynamics of rough, inelastic disks, as roughgas.kernel has it: from one contact to the
-// next, each time a root in double precision. Units: particle radius a = mass m = time unit T = 1.
+// Event-driven dynamics of rough, inelastic disks, as in roughgas.kernel: from contact to contact, each
+// time a root in double precision. Units: particle radius a = mass m = time unit T = 1.
 
 const NOTHING = -1, FLOOR = -2;
-const LEAST_DEPARTURE = 1e-3; // from the floor, a/T: any less, and a disk could hit it without end
-const LAST_RESORT = 1e-8; // contact time, in T, where the scene has none: no collapse stops the page
-const LONG = 1000; // T after which times count from a new beginning, so that none loses digits
+const LEAST_DEPARTURE = 1e-3; // from the floor, a/T: at lower speeds a disk could hit it infinitely often
+const LAST_RESORT = 1e-8; // contact time, in T, of scenes without one: prevents inelastic collapse
+const LONG = 1000; // T after which the clock is reset, so that times keep their digits
 
 const KEPT = ["x", "y", "vx", "vy", "w"];
 
 class Gas {
   // scene: {box: [width, height or null], inertia, gravity, floor, shear, contact_time, below_r};
-  // material: {r, beta, q, mu}, without q that of the scene, without mu no contact slides;
-  // particles: {x, y, vx, vy, w}, an array each; w is the velocity of the surface, a times the spin.
+  // material: {r, beta, q, mu}, q is by default that of the scene; without mu no contact slides;
+  // particles: {x, y, vx, vy, w}, all arrays; w is the velocity of the surface, a times the spin.
   constructor(scene, material, particles) {
     const number = particles.x.length;
     Object.assign(this, { scene, number, q: scene.inertia, mu: Infinity }, material);
     for (const name of KEPT) this[name] = Float64Array.from(particles[name]);
     for (const name of ["since", "angle", "next"]) this[name] = new Float64Array(number);
-    this.touched = new Float64Array(number).fill(-Infinity); // when each had its last contact
-    this.partner = new Int32Array(number); // of the next event, or NOTHING, FLOOR
-    this.changes = new Int32Array(number); // of each path
-    this.seen = new Int32Array(number); // changes of the partner's path when that was foreseen
+    this.touched = new Float64Array(number).fill(-Infinity); // time of the last contact of each disk
+    this.partner = new Int32Array(number); // in the next event: a disk, NOTHING or FLOOR
+    this.changes = new Int32Array(number); // number of changes of each disk's path
+    this.seen = new Int32Array(number); // `changes` of the partner when the event was predicted
     this.now = this.begun = this.collisions = this.halvings = 0;
     this.last = null;
     this.takeContacts();
@@ -30,10 +30,10 @@ class Gas {
 
   get time() { return this.begun + this.now; }
 
-  // Whether nothing drives it.
+  // Whether the gas has no drive.
   free() { return !this.scene.floor && !this.scene.shear; }
 
-  // How far the image above has slid.
+  // Displacement of the image above.
   slide(time) { return (this.scene.shear || 0) * time; }
 
   floorHeight() {
@@ -41,7 +41,7 @@ class Gas {
     return floor ? floor.amplitude * (this.now % floor.period) / floor.period : 0;
   }
 
-  // Brings disk i to `time`, and its image that is in the box in its place.
+  // Moves disk i to `time`, and back into the box by periods.
   arrive(i, time) {
     const { gravity, box: [width, height] } = this.scene, passed = time - this.since[i];
     this.angle[i] = (this.angle[i] + this.w[i] * passed) % (2 * Math.PI);
@@ -62,8 +62,8 @@ class Gas {
 
   foreseeAll() { for (let i = 0; i < this.number; i++) this.foresee(i); }
 
-  // Finds the next event of disk i. With the images that are nearest now a contact is found as long as
-  // no pair has moved so far that another image could be met: then the disk is looked at again.
+  // Predicts the next event of disk i. The nearest images now suffice until a pair has moved so far that
+  // another image could be met; then the disk is predicted again.
   foresee(i) {
     const { now, scene: { box: [width, height], gravity, floor }, x, y, vx, vy, since } = this;
     const room = [width / 2 - 2.001, height / 2 - 2.001], U = this.slide(1);
@@ -93,7 +93,7 @@ class Gas {
     if (partner >= 0) this.seen[i] = this.changes[partner];
   }
 
-  // The disk whose event comes next.
+  // The disk with the earliest event.
   earliest() {
     const { next } = this;
     let i = 0;
@@ -101,7 +101,7 @@ class Gas {
     return i;
   }
 
-  // Runs to a time, or to a number of collisions; false where `goesOn`, asked now and then, says stop.
+  // Runs to a time, or to a number of collisions; returns false if `goesOn`, called now and then, does.
   run(until, collisions = Infinity, goesOn = () => true) {
     for (let events = 1; this.collisions < collisions; events++) {
       const i = this.earliest(), time = this.next[i], partner = this.partner[i];
@@ -151,10 +151,10 @@ class Gas {
     this.change(i, -px, -py, turn);
   }
 
-  // Momentum exchanged and change of each spin, McNamara & Luding (1998), the collision rule: n from the
+  // Exchanged momentum and change of each spin, McNamara & Luding (1998), the collision rule: n from the
   // partner to the disk, (u, v) the relative velocity, w the sum of the spins; share is 1/2 between
-  // disks and 1 at a wall, from which the disk parts at `least`. Coulomb friction as Walton (1993): a
-  // contact slides where sticking takes a tangential impulse above mu times the normal one.
+  // disks and 1 at a wall, which the disk leaves at speed `least` or more. Coulomb friction as in Walton
+  // (1993): a contact slides if sticking needs a tangential impulse above mu times the normal one.
   response(r, beta, nx, ny, u, v, w, share, least) {
     const { q, mu } = this, normal = u * nx + v * ny;
     const slipX = u - normal * nx + w * ny, slipY = v - normal * ny - w * nx;
@@ -182,7 +182,7 @@ class Gas {
     return this.r < limit ? duration : LAST_RESORT;
   }
 
-  // ---------------------------------------------------------------- what is measured
+  // ---------------------------------------------------------------- measurements
 
   // Energies per degree of freedom, Eq. (defE); of a sheared gas without mean flow and mean spin.
   energies() {
@@ -200,15 +200,15 @@ class Gas {
     return { translation, rotation, R: whole > 0 ? rotation / whole : 0 };
   }
 
-  // Sums of v_t^2 and v_r^2 over the contacts of disks since they were last taken: R averaged over
-  // collisions is q times the second over the first plus q times the second.
+  // Sums A of v_t^2 and B of v_r^2 over the contacts of disks since the last call: R averaged over
+  // collisions is q B/(A + q B).
   takeContacts() {
     const { contacts } = this;
     this.contacts = { sliding: 0, spinning: 0 };
     return contacts;
   }
 
-  // ---------------------------------------------------------------- what is conserved
+  // ---------------------------------------------------------------- conserved quantities
 
   // Velocity and height of disk i now: [vx, vy, y].
   flight(i) {
@@ -217,7 +217,7 @@ class Gas {
       this.y[i] + (this.vy[i] - 0.5 * gravity * passed) * passed];
   }
 
-  // Mean velocity [x, y], beside the mean flow of a sheared gas, in a/T; 0 along what a floor may change.
+  // Mean velocity [x, y] minus the flow of shear, in a/T; 0 along axes in which a floor changes momentum.
   drift() {
     const { scene: { floor, shear, box: [, height] }, number } = this;
     let px = 0, py = 0;
@@ -241,14 +241,14 @@ class Gas {
 
   openLedger() { this.ledger = { begun: this.energy(), driven: 0, lost: 0 }; }
 
-  // What the balance misses, over what went through it: energy before, plus what the drive has put in,
-  // minus what contacts have lost, is the energy now.
+  // Relative error of the energy balance: energy now, minus initial energy and work of the drive, plus
+  // losses in contacts, over initial energy plus losses.
   imbalance() {
     const { begun, driven, lost } = this.ledger;
     return (this.energy() - begun - driven + lost) / (begun + lost);
   }
 
-  // Least distance between the surfaces of two disks now, or of one and the floor, in a.
+  // Smallest gap between two disks, or between a disk and the floor, now, in a.
   leastGap() {
     const { now, number, scene: { box: [width, height], floor } } = this;
     const x = Array.from({ length: number }, (_, i) => this.x[i] + this.vx[i] * (now - this.since[i]));
@@ -267,8 +267,8 @@ class Gas {
 
   // ---------------------------------------------------------------- clocks and units
 
-  // Brings all disks to the present, removes the momentum, and lets times count from whole periods of
-  // the drive before it.
+  // Moves all disks to the present, removes the momentum, and resets the clock by whole periods of the
+  // drive.
   restartClock() {
     const { floor, shear, box } = this.scene;
     const period = floor ? floor.period : shear ? box[0] / Math.abs(shear) : this.now || 1;
@@ -285,14 +285,14 @@ class Gas {
     this.foreseeAll();
   }
 
-  // Each contact leaves a rounding error in the momentum. In a cooling gas these errors do not decay as
-  // the velocities do, until the gas moves as one lump that holds all energy.
+  // Each contact leaves a rounding error in the momentum. In a cooling gas these errors do not decay with
+  // the velocities: in the end the drift of the whole gas would hold all energy.
   removeDrift() {
     const [ux, uy] = this.drift();
     for (let i = 0; i < this.number; i++) { this.vx[i] -= ux; this.vy[i] -= uy; }
   }
 
-  // Doubles all velocities of a gas without a drive, which is the same motion in half the time.
+  // Doubles all velocities of a gas without a drive: the same motion at twice the speed.
   doubleSpeeds() {
     this.restartClock();
     for (const values of [this.vx, this.vy, this.w]) for (let i = 0; i < this.number; i++) values[i] *= 2;

@@ -6,7 +6,7 @@ const CALLED = { 0.5: "0.5 uniform", 1: "1 ring" };
 const USUAL = { r: 0.9, beta: 0.5, q: 0.5, mu: Infinity };
 const SYMBOLS = { r: "r", beta: "β", q: "q", mu: "μ" };
 
-// A number as it is read, and a mean with as many digits as its error allows.
+// Numbers as text; a mean has the digits that its error allows.
 const words = text => String(text).replace("-", "−").replace("Infinity", "∞");
 
 function withError(mean, half) {
@@ -41,7 +41,7 @@ class Panel {
     this.change();
   }
 
-  // Takes over what the sliders say, at once.
+  // Applies the values of the sliders to the gas at once.
   change() {
     const material = this.material();
     this.run.change(material);
@@ -65,7 +65,7 @@ class Panel {
     this.say("remark", this.remark());
   }
 
-  // What the mean is one of.
+  // The window of the mean, and the meaning of its error, as text.
   window(average) {
     if (!average) return "Settling: the mean begins once the gas is steady.";
     const span = [average.from, average.end].map(one => Math.round(one)).join(" to ");
@@ -73,7 +73,7 @@ class Panel {
     return this.run.gas.free() ? `Mean from ${span} collisions per disk; ${error}.` : `Mean over time from ${span} T; ${error}.`;
   }
 
-  // R averaged over collisions, which theory of a driven gas means, and what sets it apart.
+  // R averaged over collisions, the average that theory of a driven gas predicts, as text.
   collisional() {
     const { gas, record } = this.run, found = record.collisional(gas.q);
     if (gas.free()) return "only of a driven gas";
@@ -81,7 +81,7 @@ class Panel {
     return withError(found.mean, found.half) + (gas.scene.shear ? ", with mean flow and spin, unlike theory" : "");
   }
 
-  // What a person should know of the gas, if anything.
+  // A remark on the state of the gas, if it needs one.
   remark() {
     const { gas } = this.run, { scene: { gravity, floor } } = gas;
     if (!this.inTime) return "slower than asked for: many contacts";

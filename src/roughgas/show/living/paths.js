@@ -1,10 +1,10 @@
 "use strict";
-// When paths meet. Units: particle radius a = mass m = time unit T = 1.
+// Times at which paths meet. Units: particle radius a = mass m = time unit T = 1.
 
 const DIAMETER = 2;
 
 // Time until two disks at separation (x, y), with relative velocity (u, v), touch, or Infinity. The
-// root is formed by division, and the discriminant from the cross product, so that neither cancels.
+// root by division, and the discriminant from the cross product, avoid cancellation.
 function timeToContact(x, y, u, v) {
   const b = x * u + y * v;
   if (b >= 0) return Infinity;
@@ -22,8 +22,8 @@ function fall(gap, speed, gravity) {
   return speed < 0 ? 2 * gap / (root - speed) : (speed + root) / gravity;
 }
 
-// When a disk whose lowest point is at `height`, rising at `speed`, meets a floor that rises for a
-// period and is back at once; `phase` is the time since a stroke began.
+// Time until a disk with its lowest point at `height`, rising at `speed`, meets a floor that rises for a
+// period and then jumps back; `phase` is the time since a stroke began.
 function timeToFloor({ amplitude, period }, gravity, height, speed, phase) {
   const strokeAt = time => {
     const above = height + speed * time - 0.5 * gravity * time * time - amplitude;

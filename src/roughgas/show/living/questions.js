@@ -1,4 +1,4 @@
-// What the page asks, and what it then shows.
+// Questions of the page, and the gases that answer them.
 
 const QUESTIONS = [
   { asked: "Nearly smooth disks (β = −0.8) with r = 0.8 start without spin, and cool. Where does R settle?",

@@ -1,14 +1,14 @@
-// What is known of R over time: a series, the part of it that is steady, a mean and its standard error.
+// Record of R over time: a series, its steady window, a mean and its standard error.
 
-const HISTORY = 480; // values that are kept: when there are more, pairs of them become one
-const CUTS = [0.1, 0.2, 0.3, 0.4, 0.5]; // shares of a series that may be its transient
-const SETTLED = 2, DOUBTED = 3.5; // sigmas of drift up to which a gas is, or remains, steady
-const LEAST_SAMPLES = 24, LEAST_BLOCKS = 8, LEAST_TIMES = 10; // evidence for a mean and its error
+const HISTORY = 480; // largest number of stored values: beyond it, pairs are averaged
+const CUTS = [0.1, 0.2, 0.3, 0.4, 0.5]; // candidates for the share of the transient in a series
+const SETTLED = 2, DOUBTED = 3.5; // largest drift, in sigmas, at which a gas becomes, or remains, steady
+const LEAST_SAMPLES = 24, LEAST_BLOCKS = 8, LEAST_TIMES = 10; // needed for a mean and its error
 
 const meanOf = values => values.reduce((sum, one) => sum + one, 0) / values.length;
 
-// Blocking with overlapping blocks, as in roughgas.statistics.errors: {error, blocks, time}, of the mean
-// of a correlated series, the number of blocks, and the correlation time in samples.
+// Blocking with overlapping blocks, as in roughgas.statistics.errors: {error, blocks, time}, the error of
+// the mean of a correlated series, the number of blocks, and the correlation time in samples.
 function blocking(series) {
   const n = series.length, mean = meanOf(series), sums = [0];
   let naive = 0;
@@ -24,15 +24,15 @@ function blocking(series) {
   }
 }
 
-// How many standard errors hold the truth with 95 %, where these are known from so many blocks: Student's
-// t, by the formula of Wallace, Ann. Math. Stat. 30, 1121 (1959).
+// Half width of the 95 % interval in standard errors, for errors from a number of blocks: Student's t, by
+// the formula of Wallace, Ann. Math. Stat. 30, 1121 (1959).
 function student(blocks) {
   const freedom = blocks - 1, sigmas = 1.96 * (8 * freedom + 3) / (8 * freedom + 1);
   return Math.sqrt(freedom * Math.expm1(sigmas * sigmas / freedom));
 }
 
-// Whether the last third of a series is where the first is, within so many sigmas of the noise, and the
-// noise is below half of the mean: as roughgas.statistics.equilibration.
+// Whether the means of the first and last thirds of a series agree within `sigmas` of the noise, and the
+// noise is below half of the mean: as in roughgas.statistics.equilibration.
 function isSteady(series, sigmas) {
   const third = Math.floor(series.length / 3), late = series.slice(-2 * third), middle = (late.length - 1) / 2;
   const mean = meanOf(late), last = meanOf(late.slice(third)), change = last - meanOf(series.slice(0, third));
@@ -44,8 +44,8 @@ function isSteady(series, sigmas) {
 }
 
 class Record {
-  // begun: the time at which it begins; step: time between samples; group: samples that make a value,
-  // such as a period of the drive; signals: which numbers of a sample must be steady; more: others.
+  // begun: its first time; step: time between samples; group: samples that make a value,
+  // such as a period of the drive; signals: columns of a sample that must be steady; more: other columns.
   constructor(begun, step, group, signals, more = []) {
     Object.assign(this, { begun, step, group, signals, due: begun + step, rows: [], latest: null, from: null, known: false });
     this.columns = [...signals, ...more];
@@ -58,7 +58,7 @@ class Record {
   // Time that a value spans.
   get width() { return this.step * this.group; }
 
-  // Adds what was seen at the time `due`; R is the first of the signals.
+  // Adds the sample of the time `due`; R is the first of the signals.
   add(seen) {
     this.columns.forEach((name, k) => { this.sums[k] += seen[name]; });
     this.due += this.step;
@@ -74,8 +74,9 @@ class Record {
     if (this.end - this.begun > 1.1 * (this.judged - this.begun)) this.judge();
   }
 
-  // Finds the time `from` which it is steady: the earliest cut that leaves all signals so (P. Heidelberger
-  // and P. D. Welch, Oper. Res. 31, 1109, 1983), or null. What was steady needs more to be doubted.
+  // Sets `from`, the start of the steady window: the earliest cut after which all signals are steady (P.
+  // Heidelberger and P. D. Welch, Oper. Res. 31, 1109, 1983), or null. A gas that was steady remains so up
+  // to a larger drift.
   judge() {
     const sigmas = this.from === null ? SETTLED : DOUBTED;
     this.judged = this.end;
@@ -84,8 +85,8 @@ class Record {
     this.from = cut === undefined ? null : this.begun + cut * this.width;
   }
 
-  // Mean of R over [from, end], its standard error, and half the interval that holds the truth with 95 %,
-  // both NaN where there is too little to know them; null while the gas is not steady.
+  // Mean of R over [from, end], its standard error, and half of its 95 % interval, both NaN if
+  // too little was measured; null while the gas is not steady.
   average() {
     if (this.from === null) return null;
     const series = this.steady("R"), { error, blocks, time } = blocking(series);
@@ -95,8 +96,8 @@ class Record {
   }
 
   // R averaged over the collisions in the same window, q B/(A + q B) of the means A and B of v_t^2 and
-  // v_r^2, and half of its interval from the linearised ratio, as roughgas.simulation.energies; null
-  // while there is none.
+  // v_r^2, and half of its interval from the linearised ratio, as in roughgas.simulation.energies; null
+  // without a window.
   collisional(q) {
     if (!this.average() || !this.columns.includes("sliding")) return null;
     const [sliding, spinning] = ["sliding", "spinning"].map(name => this.steady(name));
@@ -106,7 +107,7 @@ class Record {
     return { mean, half: this.known ? error * student(blocks) : NaN };
   }
 
-  // What was seen of a column since it is steady.
+  // Values of a column in the steady window.
   steady(name) {
     const k = this.columns.indexOf(name);
     return this.rows.slice(Math.round((this.from - this.begun) / this.width)).map(row => row[k]);

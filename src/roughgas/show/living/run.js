@@ -1,8 +1,8 @@
-// A gas that goes on, and what is measured of it.
+// A running gas, and its record.
 
-const PACE = 16; // a typical disk moves so many radii in a second
-const STILL = 0.25; // share of the first temperature at which the speeds of a cooling gas are doubled
-const DECOUPLED = 1e100; // energy of spin from which they are not: spin outlives translation, R is 1
+const PACE = 16; // speed of a typical disk on the screen, in radii a second
+const STILL = 0.25; // share of the initial temperature below which the speeds of a cooling gas are doubled
+const DECOUPLED = 1e100; // rotational energy above which they are not doubled: spin outlives translation, R is 1
 
 class Run {
   constructor(scene, material, seed) {
@@ -10,14 +10,14 @@ class Run {
     const { translation, rotation } = this.gas.energies(), { floor } = scene;
     this.unit = 2 * translation + rotation;
     this.pace = Math.max(Math.sqrt(2 * translation), floor ? 3 : 0); // typical speed, a/T
-    this.thermal = Math.sqrt(2 * this.unit / (3 * this.gas.q)); // typical spin, at equal shares
+    this.thermal = Math.sqrt(2 * this.unit / (3 * this.gas.q)); // typical spin, at equipartition
     this.startRecord();
   }
 
-  // What R is plotted over: time, or collisions per disk in a gas that cools.
+  // The abscissa of R: time, or collisions per disk in a cooling gas.
   clock() { return this.gas.free() ? 2 * this.gas.collisions / this.gas.number : this.gas.time; }
 
-  // A gas with a floor is sampled twenty times a period, each value is a mean over a period.
+  // With a floor there are twenty samples a period, and each value is a mean over a period.
   startRecord() {
     const { floor } = this.gas.scene, [step, group] = this.gas.free() ? [0.5, 1] : floor ? [floor.period / 20, 20] : [1, 1];
     const columns = this.gas.free() ? [["R"]] : [["R", "translation", "rotation"], ["sliding", "spinning"]];
@@ -25,13 +25,13 @@ class Run {
     this.gas.takeContacts();
   }
 
-  // Takes over another material at once.
+  // Changes the material at once.
   change(material) {
     Object.assign(this.gas, material).openLedger();
     this.startRecord();
   }
 
-  // Advances by so much of the gas's own time, sampling on the way; false where `goesOn` says stop.
+  // Advances by an interval of the gas's time, with samples; returns false if `goesOn` does.
   advance(time, goesOn = () => true) {
     const { gas, record } = this, free = gas.free(), until = gas.time + time;
     while (gas.time < until) {
@@ -50,7 +50,7 @@ class Run {
     return translation < STILL && rotation < DECOUPLED;
   }
 
-  // The time of the gas that is shown in so many seconds, at `pace`.
+  // Lets `pace` and `thermal`, the typical speed and spin of the picture, follow the gas.
   follow() {
     const { translation, rotation } = this.gas.energies(), typical = Math.sqrt(2 * translation), free = this.gas.free();
     this.pace = free ? typical : this.pace + 0.05 * (Math.max(typical, 1e-6) - this.pace);
@@ -58,7 +58,7 @@ class Run {
     this.thermal += (free ? 1 : 0.03) * (shown - this.thermal);
   }
 
-  // Kinetic energy over that at the start.
+  // Kinetic energy over its initial value.
   share() {
     const { translation, rotation } = this.gas.energies();
     return (2 * translation + rotation) / this.unit / 4 ** this.gas.halvings;

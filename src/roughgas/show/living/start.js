@@ -1,6 +1,6 @@
-// Where a gas starts.
+// Initial states of gases.
 
-// Random numbers from 0 to 1 that a seed repeats (mulberry32).
+// Generator of random numbers in [0, 1), reproducible by seed (mulberry32).
 function generator(seed) {
   return () => {
     seed = (seed + 0x6D2B79F5) | 0;
@@ -10,7 +10,7 @@ function generator(seed) {
   };
 }
 
-// Disks on random sites of a square lattice, with Maxwellian velocities of temperature 1 beside the
+// Disks on random sites of a square lattice, with Maxwellian velocities of temperature 1 around the
 // mean flow, and no spin.
 function atStart({ box: [width, height], floor, shear, particles }, seed) {
   const random = generator(seed), tall = height || 5 * Math.PI * particles / width;
@@ -36,7 +36,7 @@ function atStart({ box: [width, height], floor, shear, particles }, seed) {
   return found;
 }
 
-// A gas as its time begins to count; one that nothing drives is in equilibrium, smooth and elastic.
+// A gas at time 0; without a drive it is first equilibrated as smooth and elastic disks.
 function started(scene, material, seed) {
   const gas = new Gas(scene, material, atStart(scene, seed));
   if (!gas.free()) return gas;

@@ -1,7 +1,7 @@
-// What theory says of where R goes.
+// Theory of the steady R.
 
-// R of a gas whose drive puts energy into translation alone: Lun's formula, any r, where contacts
-// stick; with Coulomb friction roughgas.theory.friction_ratio, in closed form for disks.
+// R of a gas with a drive of translation alone: Lun's formula, for any r, if contacts stick; with
+// Coulomb friction roughgas.theory.friction_ratio, in closed form for disks.
 function lun(beta, q, r = 1, mu = Infinity) {
   const e = (1 + beta) / (2 + 2 * q), slid = q * e * 2 / (mu * (1 + r));
   const theta = 2 * q * e / (1 - e + Math.hypot(1 - e, slid));
@@ -9,7 +9,7 @@ function lun(beta, q, r = 1, mu = Infinity) {
 }
 
 // Theory of free cooling: R = 1/(1 + K), where K > 0 solves b K^2 - (2 a + c) K - b/2 = 0; the root is
-// written without cancellation. Where b vanishes spin is not touched, and lasts if anything is lost.
+// written without cancellation. If b = 0, contacts change no spin, and it outlasts translation if contacts dissipate.
 function cooling(r, beta, q) {
   const a = (1 - beta * beta) * (1 - q) / (1 + q) - 1 + r * r, b = 2 * q * ((1 + beta) / (1 + q)) ** 2;
   const c = (1 + beta) * (2 * q + q * q * (1 - beta)) / (1 + q) ** 2;
@@ -18,7 +18,7 @@ function cooling(r, beta, q) {
   return linear > 0 ? 2 * b / (size + 2 * b) : size / (size + b);
 }
 
-// [R or null, what it is from] of a gas.
+// [R or null, name of the theory] for a gas.
 function prediction(gas) {
   const { r, beta, q, mu } = gas, free = gas.free();
   if (beta === -1) {

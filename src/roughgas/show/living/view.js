@@ -1,15 +1,15 @@
-// The page: gases beside each other, what may be changed, and the address that keeps it.
+// The page: gases side by side, controls, and the address that stores their settings.
 
 const SCENES = JSON.parse(document.getElementById("scenes-data").textContent);
-const BUDGET = 11; // ms of a frame that the gases may take
+const BUDGET = 11; // ms a frame for simulation
 const at = id => document.getElementById(id);
 
 let panels = [], name = "cooling", seed = 1, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 let frame = 0, before = 0, pointed = false, ink = {};
 
-// ---------------------------------------------------------------- the gases go on
+// ---------------------------------------------------------------- simulation
 
-// Driven gases beside each other have one clock, cooling ones each their own.
+// Driven gases side by side share a clock; each cooling gas has its own.
 function advance(seconds) {
   for (const { run } of panels) run.follow();
   const pace = Math.max(...panels.map(({ run }) => run.pace)), begun = Math.min(...panels.map(({ run }) => run.gas.time));
@@ -43,9 +43,9 @@ function go() {
   if (playing && !document.hidden) frame = requestAnimationFrame(tick);
 }
 
-// ---------------------------------------------------------------- what is shown
+// ---------------------------------------------------------------- scene and gases
 
-// Shows a scene with a gas of each of these materials, from the start.
+// Shows a scene with a gas of each material, from time 0.
 function show(scene, materials, message = "") {
   name = scene;
   document.querySelector(`input[value=${scene}]`).checked = true;
@@ -95,7 +95,7 @@ function inAddress(material) {
   return kept.map(([key, value]) => key + value).join("/");
 }
 
-// [scene, materials] that an address asks for; an Error says in one line what it asks for in vain.
+// [scene, materials] of an address; throws an Error of one line for an illegal address.
 function read(address) {
   const [scene, ...rest] = address.split("/");
   if (!Object.hasOwn(SCENES, scene)) throw Error(`scene = ${scene}: must be one of ${Object.keys(SCENES).join(", ")}`);
@@ -124,7 +124,7 @@ function fromAddress() {
   }
 }
 
-// ---------------------------------------------------------------- from here on
+// ---------------------------------------------------------------- controls
 
 for (const one of document.querySelectorAll("input[name=scene]")) {
   one.addEventListener("change", () => show(one.value, panels.map(panel => panel.material())));
@@ -134,7 +134,7 @@ at("restart").addEventListener("click", restart);
 at("compare").addEventListener("click", compare);
 at("projector").addEventListener("click", project);
 at("another").addEventListener("click", () => { asked = (asked + 1) % QUESTIONS.length; ask(); });
-// What a pointer has pressed gives the keys back; keys alone keep their place.
+// Controls used by a pointer lose the focus, so that keys reach the page; keyboard users keep it.
 addEventListener("pointerdown", () => { pointed = true; }, true);
 for (const kind of ["click", "change"]) {
   addEventListener(kind, ({ target }) => { if (pointed && target.matches("button, select, input[type=radio]")) target.blur(); });

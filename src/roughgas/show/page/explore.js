@@ -1,5 +1,5 @@
 "use strict";
-// A choice is {experiment, variant, series, point}; its path is that of its folder in the results.
+// A choice is {experiment, variant, series, point}; its path is the path of its folder in the results.
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
@@ -7,7 +7,7 @@ const minus = text => text.replaceAll("-", "−");
 
 let chosen;
 
-// ---------------------------------------------------------------- what is chosen
+// ---------------------------------------------------------------- the choice
 
 function pathOf({ experiment, variant, series, point }) {
   const folder = variant.name === null ? experiment.name : `${experiment.name}/${variant.name}`;
@@ -28,7 +28,7 @@ function nearest(list, label, value) {
   return list.reduce((best, one) => (distance(one) < distance(best) ? one : best));
 }
 
-// What comes closest to the present choice where some of it is chosen anew.
+// The choice closest to the present one after a change of some of its fields.
 function adapted(change) {
   const next = { ...chosen, ...change };
   const { experiment } = next;
@@ -56,9 +56,9 @@ function chooseByHash() {
   at("status").hidden = false;
 }
 
-// ---------------------------------------------------------------- words and numbers
+// ---------------------------------------------------------------- text
 
-// Such as 0.3565(30): the error in units of the last digits, two of them.
+// A value with its error in units of the last two digits: 0.3565(30).
 function withError(value, error, sign = "") {
   if (value === null) return "not known";
   if (!error) return `${sign}${value.toFixed(4)} (error not known)`;
@@ -80,10 +80,10 @@ function residual({ R, theory, stderr }) {
 
 const STEADY = new Map([[true, "found"], [false, "not found"], [null, "not known: too little was measured"]]);
 
-// Such as "theory: Lun's formula", and "theory of free cooling".
+// The name of the theory: "theory: Lun's formula", or "theory of free cooling".
 const theoryName = theory => (theory.startsWith("theory") ? theory : `theory: ${theory}`);
 
-// How large the gas is: 160 disks, box 100 × 100 a, packing 0.0503.
+// Size of the gas: 160 disks, box 100 × 100 a, packing 0.0503.
 function sizeOf({ particles, dimension, box, packing }) {
   const found = [`${particles} ${dimension === 3 ? "spheres" : "disks"}`];
   if (box) found.push(`box ${box.map(String).join(" × ")}${box.includes("open") ? ", sides in a" : "\u00a0a"}`);
@@ -138,7 +138,7 @@ function showNumbers() {
   at("command").textContent = chosen.point.command;
 }
 
-// ---------------------------------------------------------------- how it is chosen
+// ---------------------------------------------------------------- controls
 
 function fill(id, list, label, present) {
   at(id).replaceChildren(...list.map(one => new Option(label(one), one.name ?? "", one === present, one === present)));
@@ -186,7 +186,7 @@ addEventListener("hashchange", chooseByHash);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 addEventListener("beforeprint", () => turnToPaper(true));
 addEventListener("afterprint", () => turnToPaper(false));
-let wide = innerWidth; // a phone changes its height whenever one scrolls
+let wide = innerWidth; // on phones, scrolling changes the height
 addEventListener("resize", () => {
   if (innerWidth !== wide) draw();
   wide = innerWidth;

@@ -1,4 +1,4 @@
-// A small picture of what is simulated, from the names of the effects that act.
+// A small picture of a scene, from the names of its effects.
 
 const DISKS = [[20, 20, 40], [52, 14, 200], [88, 24, 300], [34, 42, 120], [70, 44, 10], [98, 52, 250],
   [18, 62, 80], [50, 66, 330], [80, 68, 160]];

@@ -1,5 +1,5 @@
 // Plots by uPlot: R and R minus theory over beta, or over the third axis of a sweep; R and energies over time.
-// uPlot has axes, curves, zoom and the values under the cursor; points with their error bars are drawn here.
+// uPlot has axes, curves, zoom and the values under the cursor; this file draws points with error bars.
 
 const BRIGHTER = { "#0072B2": "#56B4E9", "#D55E00": "#ff8a4c", "#009E73": "#2bc79a" };
 const CLOCKS = { time: "time in T", collisions_per_particle: "collisions per particle" };
@@ -24,13 +24,13 @@ function tick(value) {
   return `10${String(exponent).replace(/./g, one => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)])}`;
 }
 
-// Of many decades, the powers of ten that there is room for.
+// Powers of ten as ticks, thinned out to fit the axis.
 function decades(u, _, low, high) {
   const [first, last] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))], step = Math.ceil((last - first) / 5) || 1;
   return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, k) => 10 ** (first + k * step));
 }
 
-// A plot takes the place of an earlier one, and keeps its zoom if it shows the `same`.
+// Replaces an earlier plot, and keeps its zoom if both show the `same`.
 function plot(id, { height, x, y, series, data, hooks, legend = false, sync, same }) {
   const before = PLOTS[id], zoomed = before?.same === same ? before.scales : {};
   before?.destroy();
@@ -50,7 +50,7 @@ function draw() {
   drawOverTime();
 }
 
-// Paper is white, and no wider than it is.
+// For printing: white background, and the width of the paper.
 function turnToPaper(begins) {
   document.documentElement.classList.toggle("on-paper", begins);
   draw();
@@ -58,7 +58,7 @@ function turnToPaper(begins) {
 
 // ---------------------------------------------------------------- R and R minus theory
 
-// What is drawn with one symbol: all beta at one r, or all values of the third axis at one beta.
+// Rows of points with the same symbol: all beta at an r, or all values of the third axis at a beta.
 function drawnRows() {
   const { experiment, variant, series } = chosen;
   if (over === "beta" || experiment.variants.length < 2) return variant.series.map(one => ({
@@ -84,7 +84,7 @@ function mark({ ctx }, { symbol }, x, y, size) {
   ctx.closePath();
 }
 
-// Filled where a steady state was found, open where not, open with a dot where it is not known.
+// Filled symbols are steady, open ones are not; open with a dot: not known.
 function drawPoint(u, look, size, x, y, half, point) {
   const { ctx } = u, px = uPlot.pxRatio;
   Object.assign(ctx, { strokeStyle: look.colour, fillStyle: look.colour, lineWidth: 1.3 * px });
@@ -119,7 +119,7 @@ function drawPoints(u, rows, valueOf) {
   u.ctx.restore();
 }
 
-// The point under the mouse says its numbers; a click chooses it.
+// Shows the numbers of the point under the mouse; a click chooses it.
 function listenTo(u, rows, valueOf) {
   const tip = u.over.appendChild(document.createElement("div"));
   let down = [0, 0];
@@ -155,7 +155,7 @@ function horizontal(rows) {
   return { label: parameterOf(experiment), scale, axis };
 }
 
-// All values and a margin; what is zoomed to as it is.
+// Range of an axis: all values and a margin, or the zoomed range.
 function padded(values, wide) {
   const [first, last] = [Math.min(...values), Math.max(...values)], margin = 0.05 * (last - first || 1);
   const all = wide ? [first / 1.3, last * 1.3] : [first - margin, last + margin];
@@ -167,7 +167,7 @@ function drawRatios() {
   const one = rows.every(row => String(row.curve[1]) === String(rows[0].curve[1]));
   const xs = [...new Set(rows.flatMap(row => [...row.curve[0], ...row.places.map(place => place.x)]))].sort((a, b) => a - b);
   const column = pairs => { const known = new Map(pairs); return xs.map(x => known.get(x) ?? null); };
-  // invisible, so that axes have room for error bars
+  // invisible series: they make axes include the error bars
   const bounds = valueOf => rows.flatMap(row => [-1, 1].map(sign => column(row.places.map(({ x, choice: { point } }) =>
     [x, valueOf(point) === null ? null : valueOf(point) + sign * (point.stderr ?? 0)]))));
   const hidden = data => data.map(() => ({ paths: () => null, points: { show: false } }));

@@ -1,0 +1,229 @@
+"""Figures of accuracy: errors of R against CPU seconds, and deviations from Maxwellian theory."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MultipleLocator
+
+from roughgas.show.style import FAINT, GREY, LINE_STYLES, THEORY, LineStyle, Style
+from roughgas.statistics.fits import power_law
+from roughgas.tasks import table_cell
+
+Panel = tuple[Callable[[Axes, xr.Dataset], None], str]
+SIZE = (7.0, 4.2)  # inches, of two panels
+LINE_OF_WAY = {"length": "-", "seeds": "--"}
+METHODS = {
+    "closed_form": ("closed form (Maxwellian theory)", LineStyle(THEORY, "*", "none")),
+    "rate_equations": ("rate equations, run longer and longer", LINE_STYLES[2]),
+    "dsmc": ("DSMC", LINE_STYLES[1]),
+    "event_driven": ("event-driven", LINE_STYLES[0]),
+}
+SHADED = 1 / 3  # lower end of the shaded band, over the error of the reference
+LEGEND_ROOM = 0.4  # below the data, over their range
+PACKING_MARKERS = ("X", "P", "d")
+TOTAL_ERROR = np.sqrt(2.0)  # over the deviation, which equals the statistical error
+RESOLVED = 2.0  # standard errors: smaller deviations are not drawn
+BARS: Style = {"elinewidth": 0.8, "capsize": 1.5}
+THIN: Style = {"ls": "none", "elinewidth": 0.9}
+LOG: Style = {"xscale": "log", "yscale": "log"}
+
+
+def draw(statistical: xr.Dataset, models: xr.Dataset) -> Figure:
+    """Return the figure of statistical errors and of models."""
+    return _in_panels(PANELS[:2], statistical, models)
+
+
+def draw_limits(discretisation: xr.Dataset, models: xr.Dataset) -> Figure:
+    """Return the figure of springs and time steps, and of deviations from Maxwellian theory."""
+    return _in_panels(PANELS[2:], discretisation, models)
+
+
+def _in_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
+    """Return a figure of two panels, each with its dataset, and r and beta in its title."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    all_axes = figure.subplots(1, len(panels))
+    for axes, (panel, title), dataset in zip(all_axes, panels, data, strict=True):
+        panel(axes, dataset)
+        r, beta = (float(dataset.attrs[key]) for key in ("r", "beta"))
+        point = rf"$r = {r:g}$, $\beta = {beta:g}$"
+        axes.set_title(title.format(point), loc="left", fontsize=8.5)
+    return figure
+
+
+def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
+    """Draw relative errors, their fits and marks of typical accuracies, from group
+    `statistical`."""
+    axes.set(xlabel="CPU seconds of measurement", ylabel="relative error of $R$ (rms)", **LOG)
+    for look, name in zip(LINE_STYLES, data.scene.values, strict=False):
+        scene = data.sel(scene=name)
+        slopes = ", ".join(table_cell(scene.sel(way=way), "slope") for way in LINE_OF_WAY)
+        label = f"{name}: {slopes}".replace("-", "\N{MINUS SIGN}")
+        for way, line in LINE_OF_WAY.items():
+            levels, R = scene.sel(way=way), float(scene.R)
+            x, error, groups = levels.seconds.values, levels.error.values / R, levels.groups.values
+            style: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "zorder": 3}
+            style |= {"label": label} if way == "length" else {"mfc": "white"}
+            axes.errorbar(x, error, levels.error_stderr / R, mew=0.9, **style, **BARS)
+            ends = np.array([x.min(), x.max()])
+            law = power_law(x, error, groups, bias=-0.5 / groups)
+            axes.plot(ends, law(ends), color=look.colour, ls=line, lw=0.9)
+    axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # leaves room for the legend
+    grey: Style = {"color": GREY, "fontsize": 7.5}
+    offset: Style = {"xytext": (3, 3), "textcoords": "offset points", "va": "bottom"}
+    for accuracy in data.relative_error.values:
+        axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
+        position: Style = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
+        axes.annotate(f"{100 * accuracy:g} %", **position, **offset, **grey)
+    title = "slope: longer runs (filled), more seeds (open)"
+    axes.legend(loc="lower left", title=title, alignment="left")
+
+
+def draw_models(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the relative error of R against CPU seconds, log-log, by each method at one (r, beta).
+
+    There is no line through symbols, since no run was made between two lengths.
+    """
+    axes.set(xlabel="CPU time of one run / s", ylabel="relative error of $R$", **LOG)
+    for method, (label, look) in METHODS.items():
+        x, (y, bar) = data[f"{method}_seconds"].values, _value_and_error(data, f"{method}_error")
+        size: Style = {"markersize": 10} if look.marker == "*" else {}
+        colours: Style = {"color": look.colour, "marker": look.marker}
+        axes.errorbar(x, y, bar, label=label, zorder=3, **colours, **size, **THIN)
+    seconds = data.event_driven_seconds.values
+    fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
+    axes.plot(seconds, fit, color=LINE_STYLES[0].colour, linewidth=0.8, zorder=1)
+    _draw_floors(axes, data)
+    axes.legend(loc="lower left")
+
+
+def draw_map(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R of the homogeneous gas over theory, minus 1, against beta, a series for each r.
+
+    Dashes are the prediction from its measured cumulants a20 and a11.
+    """
+    order = np.argsort(-data.map_r.values)
+    for row, look in zip(order, LINE_STYLES, strict=False):
+        series = data.isel(map_r=row)
+        x, (y, bar) = series.map_beta.values, _value_and_error(series, "map_gap")
+        label = f"$r = {float(series.map_r):g}$"
+        style: Style = {"color": look.colour, "marker": look.marker, "label": label}
+        axes.errorbar(x, 100 * y, 100 * bar, markersize=3.6, **style, **THIN)
+        explained = 100 * series.map_gap_explained.values
+        axes.plot(x, explained, "_", color=look.colour, ms=7, zorder=1)
+        _draw_event_driven(axes, data, float(series.map_r), look.colour)
+    for k, packing in enumerate(data.packing.values):
+        axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"events, packing {packing:g}")
+    axes.plot([], [], "_", color=GREY, ms=7, label="$a_{20}$, $a_{11}$ to first order")
+    axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
+    axes.set(xlim=(-1.04, 1.04), xlabel=r"roughness $\beta$")
+    axes.set_ylabel(r"$R/R_\mathrm{theory} - 1$   (%)")
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
+    axes.xaxis.set_minor_locator(MultipleLocator(0.1))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - LEGEND_ROOM * (high - low), high)
+    axes.legend(loc="lower center", ncols=2, title="homogeneous gas (DSMC)")
+
+
+def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the error of R against CPU seconds, for soft spheres and for events."""
+    axes.set(xlabel="CPU seconds", ylabel="relative error of $R$, r.m.s.", **LOG)
+    _draw_events(axes, data)
+    for look, steps in zip(LINE_STYLES, data.steps.values, strict=False):
+        label = f"soft spheres, {steps} steps a contact"
+        _draw_method(axes, data.sel(steps=steps), "soft", look, label)
+    _name_contact_times(axes, data)
+    _draw_method(axes, data, "model", LineStyle(THEORY, "x", ":"), "events, contact-time model")
+    axes.set_ylim(bottom=axes.get_ylim()[0] / 3)  # room for the legend
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100.0 * y:g} %"))
+    axes.legend(loc="lower left")
+
+
+PANELS: tuple[Panel, ...] = (
+    (draw_statistical, "(a) noise, {}"),
+    (draw_models, "(b) models of a cooling gas, {}"),
+    (draw_discretisation, "(c) springs and time steps, {}"),
+    (draw_map, "(d) what Maxwellian theory misses"),
+)
+
+
+def _value_and_error(data, name):
+    return data[name].values, data[f"{name}_stderr"].values
+
+
+def _draw_floors(axes, data):
+    """Draw the error that each model tends to at any cost, and the error of the reference."""
+    across = {"textcoords": "offset points", "fontsize": 7}
+    coordinates = {"xycoords": axes.get_yaxis_transform()}
+    for name, text, colour, x, side in (
+        ("closed_form_error", "Maxwellian velocities", THEORY, 0.985, "right"),
+        ("dsmc_floor", "no density, no correlations", LINE_STYLES[1].colour, 0.015, "left"),
+    ):
+        level = float(data[name])
+        axes.axhline(level, color=colour, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
+        how = {"color": colour, "va": "bottom", "ha": side} | across | coordinates
+        axes.annotate(text, (x, level), (0, 3), **how)
+    reference_error = float(data.R_reference_stderr / data.R_reference)
+    axes.axhspan(
+        reference_error * SHADED, reference_error, color=FAINT, alpha=0.25, linewidth=0, zorder=0
+    )
+    axes.set_ylim(
+        bottom=reference_error * SHADED * 0.02
+    )  # room for the legend beneath the shaded band
+    below = {"va": "top", "ha": "right", "color": GREY} | across | coordinates
+    axes.annotate("error of the reference", (0.985, reference_error), (0, -3), **below)
+
+
+def _draw_event_driven(axes, data, r, colour):
+    """Draw the points at this r, with one symbol per packing fraction."""
+    points = data.isel(density_point=np.flatnonzero(data.density_r.values == r))
+    large = {"markersize": 7, "markeredgecolor": THEORY, "markeredgewidth": 0.6, "zorder": 4}
+    for k in range(points.sizes["packing"] if points.sizes["density_point"] else 0):
+        x = points.density_beta.values
+        y, bar = _value_and_error(points.isel(packing=k), "density_gap")
+        marker = PACKING_MARKERS[k]
+        axes.errorbar(x, 100 * y, 100 * bar, color=colour, marker=marker, **large, **THIN)
+
+
+def _draw_events(axes, data):
+    """Draw the statistical error of the event-driven gas, its only error, and its law beyond the
+    data."""
+    seconds = data.statistical_seconds.values
+    error = _value_and_error(data, "statistical_error")
+    axes.errorbar(seconds, *error, fmt="o", color=THEORY, ms=3, **BARS)
+    last = float(data.event_cpu_seconds), float(data.event_R_stderr / data.reference_R)
+    scale = last[1] * np.sqrt(last[0])
+    time_range = np.array([seconds[len(seconds) // 2], 10.0 * last[0]])
+    axes.plot(
+        time_range, scale / np.sqrt(time_range), color=THEORY, label="events: statistical error"
+    )
+
+
+def _draw_method(axes, data, kind, look, label):
+    """Draw sqrt(2) |deviation| against the CPU seconds after which the statistical error equals
+    it."""
+    deviation, stderr = _value_and_error(data, f"{kind}_deviation")
+    resolved = np.abs(deviation) > RESOLVED * stderr
+    size, bar = TOTAL_ERROR * np.abs(deviation[resolved]), TOTAL_ERROR * stderr[resolved]
+    seconds = data[f"{kind}_matched_seconds"].values[resolved]
+    # both coordinates stem from one measured deviation: its error moves a point along a slanted bar
+    (x0, y0), (x1, y1) = ((seconds / (1.0 + s * bar / size) ** 2, size + s * bar) for s in (-1, 1))
+    axes.plot([x0, x1], [y0, y1], color=look.colour, linewidth=0.8)
+    style = {"color": look.colour, "marker": look.marker, "linestyle": look.line}
+    axes.plot(seconds, size, label=label, **style)
+
+
+def _name_contact_times(axes, data):
+    """Write t_c nu next to the outermost of the points that share it."""
+    small = {"fontsize": 7, "color": GREY}
+    resolved = np.abs(data.soft_deviation) > RESOLVED * data.soft_deviation_stderr
+    seconds = data.soft_matched_seconds.where(resolved, 0.0)
+    for share in data.contact_time.values[resolved.any("steps").values]:
+        steps = seconds.sel(contact_time=share).idxmax("steps")
+        point = data.sel(contact_time=share, steps=steps)
+        position = point.soft_matched_seconds.item(), TOTAL_ERROR * abs(point.soft_deviation.item())
+        axes.annotate(f"{share:g}", position, (5, 4), textcoords="offset points", **small)
+    corner = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+    axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **corner, **small)
