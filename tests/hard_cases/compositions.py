@@ -184,9 +184,9 @@ def _with_waves(compositions, strength):
 
 
 @st.composite
-def scenes(draw, compositions):
+def scenes(draw, composition):
     """(settings of an experiment, r, beta) of a legal scene with 2 to 40 particles."""
-    names, dimension, wave = draw(st.sampled_from(compositions))
+    names, dimension, wave = composition
     effects = draw(parameters(names))
     for name in WAVING & names:
         effects[name]["wave"] = wave
@@ -205,9 +205,9 @@ def scenes(draw, compositions):
 
 
 @st.composite
-def mixtures(draw, compositions):
+def mixtures(draw, composition):
     """As `scenes`, of up to three species, whose sizes differ threefold and masses by 1e6."""
-    experiment, r, beta = draw(scenes(compositions))
+    experiment, r, beta = draw(scenes(composition))
     material = {"restitution": st.floats(max(r, 0.9), 1.0)}
     if "spin" in experiment["effects"]:
         material |= {"inertia": st.floats(0.05, 1.0), "roughness": st.floats(-1.0, 1.0)}
