@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks import tables
-from roughgas.statistics.errors import YES, Estimate
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import YES
 from roughgas.statistics.student import wallace_sigmas
 
 THEIRS, OURS = "theirs", "ours"

@@ -23,7 +23,8 @@ import numpy as np
 from benchmarks.tables import table as as_table
 from roughgas import simulate
 from roughgas.observables import OBSERVABLES
-from roughgas.statistics.errors import YES, half_width
+from roughgas.statistics.errors import half_width
+from roughgas.statistics.sample_sizes import YES
 
 WINDOWS, CRITERIA = (12, 24, 48, 96), (24, 48, 96)  # e-folds
 MAX_MISSES = 0.08

@@ -27,7 +27,7 @@ from roughgas.effects.species import PairSettings, RadiiSettings, SpeciesSetting
 from roughgas.results import row_verdicts
 from roughgas.results.comparison import read_rows
 from roughgas.results.row_counts import row_counts
-from roughgas.statistics import errors
+from roughgas.statistics import estimates
 from roughgas.tasks import read_variables
 
 STUDIES = Path(__file__).parents[1] / "studies"
@@ -43,8 +43,8 @@ DECIDES = dict.fromkeys(
 )
 DECIDES |= dict.fromkeys(("FALSE_DISCOVERIES", "TESTED_SHARE", "TESTED_SCALE"), row_verdicts)
 DECIDES |= {
-    "SIGNIFICANT": errors,
-    "POWER": errors,
+    "SIGNIFICANT": estimates,
+    "POWER": estimates,
     "INTERMEDIATE": JUDGES,
     "CONSIDERABLY": JUDGES,
     "SHARE_FROM_AVERAGING": JUDGES,

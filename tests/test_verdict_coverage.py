@@ -14,7 +14,7 @@ from benchmarks.coverage_tables import OURS, THEIRS, Comparison, Runs, Scene, ta
 from raw import build, run_point
 
 from roughgas.config import experiment_of
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.student import wallace_t
 
 ROOT = Path(__file__).parent.parent

@@ -43,13 +43,8 @@ from roughgas.claims.verdicts import (
 from roughgas.data.variables import third_axis
 from roughgas.results.comparison import Row
 from roughgas.results.long_table import LongRow, read_long_rows
-from roughgas.statistics.errors import (
-    SIGNIFICANCE,
-    SIGNIFICANT,
-    Estimate,
-    stderr_over_seeds,
-    sum_error,
-)
+from roughgas.statistics.errors import stderr_over_seeds, sum_error
+from roughgas.statistics.estimates import SIGNIFICANCE, SIGNIFICANT, Estimate
 from roughgas.statistics.fits import limit_at_zero, power_law
 from roughgas.statistics.student import t_quantile
 from roughgas.theory.prediction import predicted_ratio, species_at

@@ -27,7 +27,8 @@ from roughgas.scene.initial import initial_state
 from roughgas.scene.settings import scene_settings
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
-from roughgas.statistics.errors import Estimate, blocking_stderr, period_means, stderr_over_seeds
+from roughgas.statistics.errors import blocking_stderr, period_means, stderr_over_seeds
+from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
 from roughgas.tasks import (
     dataset,

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.base.fields import OwnSettings
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.tasks import (
     dataset,

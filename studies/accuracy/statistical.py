@@ -22,7 +22,8 @@ from roughgas.scene import build
 from roughgas.simulation import protocols
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.experiment import Experiment
-from roughgas.statistics.errors import Estimate, autocorrelation_time, period_means
+from roughgas.statistics.errors import autocorrelation_time, period_means
+from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.tasks import (
     dataset,

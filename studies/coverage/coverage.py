@@ -19,7 +19,9 @@ from roughgas.base.fields import OwnSettings
 from roughgas.scene import build
 from roughgas.simulation import protocols
 from roughgas.simulation.point import run_point
-from roughgas.statistics.errors import YES, Estimate, half_width, pooled_error
+from roughgas.statistics.errors import half_width, pooled_error
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import YES
 from roughgas.tasks import (
     dataset,
     markdown,

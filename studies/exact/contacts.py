@@ -60,19 +60,23 @@ def threshold(settings, dimension) -> float:
 def _closed_form_ratios(contacts, settings, dimension):
     columns = list(zip(*contacts, strict=True))[1:]
     n, impulse, turn, before, after = (np.array(column) for column in columns)
-    normal, slip, slip_after = _along(before, n), _across(before, n), _across(after, n)
-    pushed, dragged = _along(impulse, n), _across(impulse, n)
+    normal, slip, slip_after = (
+        _component_along(before, n),
+        _normal_to(before, n),
+        _normal_to(after, n),
+    )
+    pushed, dragged = _component_along(impulse, n), _normal_to(impulse, n)
     friction = _norm(dragged) / np.abs(pushed)
     tangent = _norm(slip) / np.abs(normal)
     sticks = friction < settings["mu"] * (1.0 - SLIDING_TOLERANCE)
     torque = -np.cross(n, impulse)
     q = theory.moment_of_inertia(dimension)
     return {
-        "restitution": -_along(after, n) / normal,
-        "roughness": (-_along(slip_after, slip) / _along(slip, slip))[sticks],
+        "restitution": -_component_along(after, n) / normal,
+        "roughness": (-_component_along(slip_after, slip) / _component_along(slip, slip))[sticks],
         "friction": friction[~sticks],
         "threshold": settings["mu"] * (tangent / friction)[sticks],
-        "turn": q * _along(turn, torque) / _along(torque, torque),
+        "turn": q * _component_along(turn, torque) / _component_along(torque, torque),
         "misplaced": (sticks != (tangent < threshold(settings, dimension))).astype(float),
     }
 
@@ -159,13 +163,13 @@ def _vector(rows):
     return np.pad(rows, ((0, 0), (0, 3 - rows.shape[1])))
 
 
-def _along(rows, n):
+def _component_along(rows, n):
     return np.einsum("ij,ij->i", rows, n)
 
 
-def _across(rows, n):
-    return rows - _along(rows, n)[:, None] * n
+def _normal_to(rows, n):
+    return rows - _component_along(rows, n)[:, None] * n
 
 
 def _norm(rows):
-    return np.sqrt(_along(rows, rows))
+    return np.sqrt(_component_along(rows, rows))

@@ -65,7 +65,7 @@ def _comparison(row: Row) -> tuple[str, str, str]:
     return row.quantity, row.tier, row.source
 
 
-def _state(dimension: float, **parameters: float) -> str:
+def _parameters_text(dimension: float, **parameters: float) -> str:
     """Return the text of a state, such as "spheres, r = 0.9"."""
     return ", ".join(
         [NAMES[int(dimension)], *(f"{name} = {x:g}" for name, x in parameters.items())]
@@ -79,7 +79,7 @@ def _exact_value(value: float) -> Estimate:
 
 def _fluid(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension, packing = int(gas.parameters[0]), gas.parameters[1]
-    state = _state(dimension, packing=packing)
+    state = _parameters_text(dimension, packing=packing)
     exact = published.compressibility(packing, dimension)
     missing = published.fixed_number_correction(packing, dimension) / data.attrs["particles"]
     series = {"tier": "exact", "source": CLISBY, "theirs": exact}
@@ -128,7 +128,7 @@ def _contacts(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
         ),
         "turn": ("change of spin over the impulse's torque", 1.0, "q m a^2 (w' - w) = -a n x J"),
     }
-    state = _state(dimension, r=r, beta_0=beta, mu=mu)
+    state = _parameters_text(dimension, r=r, beta_0=beta, mu=mu)
     for partner, partners in {"pair": "pairs", "wall": "walls that move"}.items():
         for name, (quantity, value, read) in closed_forms.items():
             yield Row(
@@ -143,7 +143,7 @@ def _contacts(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
             )
     yield Row(
         quantity="speed at which a sliding particle begins to roll, over its first speed",
-        at=_state(dimension, q=q),
+        at=_parameters_text(dimension, q=q),
         tier="exact",
         source=CORIOLIS,
         read="1/(1 + q): angular momentum about the point of contact is conserved",
@@ -166,7 +166,7 @@ def _rates(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
             continue  # smooth particles keep their spins
         yield Row(
             quantity=quantity,
-            at=_state(dimension, r=r, beta=beta, theta=theta),
+            at=_parameters_text(dimension, r=r, beta=beta, theta=theta),
             tier="exact",
             source=HUTHMANN,
             read="rate equations, n in collisions per particle; exact for Maxwellians",
@@ -204,7 +204,7 @@ def _tracer(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
 
 def _haff(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     dimension, r, beta = gas.parameters
-    state = _state(dimension, r=r, beta=beta)
+    state = _parameters_text(dimension, r=r, beta=beta)
     yield Row(
         quantity="exponent p of T ~ t^-p of a homogeneous cooling gas",
         at=state,
@@ -236,7 +236,7 @@ def _sonine(gas: Gas, theories: dict[str, Formula], drive: str, note: str) -> It
     for source, formula in theories.items():
         yield Row(
             quantity=f"a2 of a smooth {drive} gas",
-            at=_state(dimension, r=r),
+            at=_parameters_text(dimension, r=r),
             tier="theory",
             source=source,
             read=CLOSED_FORM,
@@ -269,7 +269,7 @@ def _tail(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     )
     yield Row(
         quantity=f"A of the tail {law} of a smooth gas {drive}, c = v/sqrt(2 T/m)",
-        at=_state(dimension, r=r, a2=a2),
+        at=_parameters_text(dimension, r=r, a2=a2),
         tier="exact",
         source=VAN_NOIJE,
         read="what is lost of fast particles over the cooling, with the measured a2; c to infinity",
@@ -287,7 +287,7 @@ def _rough(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     for name in ("R", "a20", "a11", "a02"):
         yield Row(
             quantity=f"{name} of a rough cooling gas",
-            at=_state(dimension, r=r, beta=beta),
+            at=_parameters_text(dimension, r=r, beta=beta),
             tier="theory",
             source=MEGIAS,
             read="Sonine approximation, first order in cumulants; collision integrals derived anew",
@@ -325,7 +325,7 @@ def _clusters(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
     for name, exponent in (("translation", 1.0), ("rotation", 1.6)):
         yield Row(
             quantity=f"exponent of time in the cooling of {name} while clusters grow",
-            at=_state(2, r=r, beta=beta),
+            at=_parameters_text(2, r=r, beta=beta),
             tier="simulation",
             source=PATHAK,
             read="abstract: close to this at all r and beta, error not given there",
@@ -348,7 +348,7 @@ def _mixture(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
         change = "loss of T_tr" if name.startswith("loss") else "gain of T_rot"
         yield Row(
             quantity=f"first {change} of a species in a mixture, over T_tr",
-            at=f"{_state(3, r=r, beta=beta, theta=theta)}, species {name[-1]} {both}",
+            at=f"{_parameters_text(3, r=r, beta=beta, theta=theta)}, species {name[-1]} {both}",
             tier="exact",
             source=SANTOS,
             read="energy production rates, n in collisions per particle; exact for Maxwellians",

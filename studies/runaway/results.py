@@ -27,7 +27,7 @@ from roughgas.tasks import (
     table_cell,
 )
 
-from .tasks import SIMULATED, gas_name
+from .tasks import SIMULATED, task_name
 
 VARIABLES = Path(__file__).with_name("variables.yaml")
 EXCLUDED_ESCAPES = -math.log(0.05)
@@ -45,7 +45,7 @@ def combine(task_results: Mapping[str, xr.Dataset], settings: Mapping[str, Any])
     for kind in SIMULATED:
         particles = [gas["particles"] for gas in settings[kind]]
         rows = [
-            [_escapes(task_results[gas_name(kind, n, mu)]) for n in particles] for mu in friction
+            [_escapes(task_results[task_name(kind, n, mu)]) for n in particles] for mu in friction
         ]
         gases = stack_rows([stack_rows(row) for row in rows])
         values |= {f"{kind}_{name}": x for name, x in gases.items()}
@@ -119,7 +119,7 @@ def _rate(task_results, numbers, mu, gas) -> dict[str, Any]:
     escapes, exposed = 0, 0.0
     growth = np.asarray(theory.runaway_growth(numbers, *gas))
     for number, grown in zip(numbers, growth, strict=True):
-        runs = task_results[gas_name("dsmc", number, mu)]
+        runs = task_results[task_name("dsmc", number, mu)]
         gone, observed = int(np.isfinite(runs.time).sum()), runs.observed.values
         if observed.sum() > WAITING_FACTOR * grown * max(gone, 1):
             escapes += gone
@@ -131,7 +131,7 @@ def _rate(task_results, numbers, mu, gas) -> dict[str, Any]:
 
 def _example(task_results, example) -> dict[str, Any]:
     """Return R and participation over time, of one gas at each mu."""
-    runs = [task_results[gas_name("example", example["particles"], mu)] for mu in example["mu"]]
+    runs = [task_results[task_name("example", example["particles"], mu)] for mu in example["mu"]]
     values = {
         f"example_{name}": np.array([run[name].values for run in runs])
         for name in ("R", "largest_share", "participation")

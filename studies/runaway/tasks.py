@@ -32,7 +32,7 @@ def tasks(settings: Mapping[str, Any]) -> list[str]:
     return list(gases_of(settings))
 
 
-def gas_name(kind: str, particles: int, mu: float) -> str:
+def task_name(kind: str, particles: int, mu: float) -> str:
     """Return the name of a task."""
     return f"{kind}-n{particles}-mu{mu:g}"
 
@@ -47,7 +47,7 @@ def gases_of(settings: Mapping[str, Any]) -> dict[str, tuple[str, float, Mapping
     ]
     gases += [("example", mu, settings["example"]) for mu in settings["example"]["mu"]]
     gases.sort(key=_cost, reverse=True)
-    return {gas_name(kind, row["particles"], mu): (kind, mu, row) for kind, mu, row in gases}
+    return {task_name(kind, row["particles"], mu): (kind, mu, row) for kind, mu, row in gases}
 
 
 def _cost(gas):

@@ -9,7 +9,7 @@ from schedules import COOLING, STEADY
 from tests.pages import check_study
 from tests.study_modules import module_of_study
 
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 from roughgas.tasks.running import Experiments
 
 coverage = module_of_study("coverage", "coverage")

@@ -93,7 +93,7 @@ def test_a_reused_process_id_is_not_taken_for_the_holder():
     [(-1, "0 s"), (59.9, "59 s"), (200, "3 min"), (7500, "2 h 5 min"), (2e5, "2 d 7 h")],
 )
 def test_ages_are_rounded_down(seconds, text):
-    assert folder_lock.age(seconds) == text
+    assert folder_lock.duration_text(seconds) == text
 
 
 def test_a_lock_of_snakemake_without_a_process_gets_advice(tmp_path):

@@ -23,7 +23,7 @@ from roughgas.claims.verdicts import (
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.statistics.errors import POWER, Estimate
+from roughgas.statistics.estimates import POWER, Estimate
 
 materials = module_of_study("viscoelastic", "judges")
 

@@ -11,7 +11,8 @@ from tests.entry import main
 from roughgas import theory
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.statistics.errors import YES, Estimate
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import YES
 
 
 def show(capsys, *arguments):

@@ -11,7 +11,8 @@ from roughgas.effects import contacts
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 from roughgas.kernel.state import ALTERED_RESTITUTIONS, EXPONENT
-from roughgas.simulation.energies import CONTACT_SUMS, contact_averages
+from roughgas.simulation.energies import CONTACT_SUMS
+from roughgas.simulation.energy_averages import contact_averages
 from roughgas.simulation.energy_balance import balance
 
 KERNELS_WITH_AVERAGES = ("bed", "sheared", "shaken", "heated", "spheres")

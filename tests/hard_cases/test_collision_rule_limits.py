@@ -14,7 +14,7 @@ from roughgas.kernel.particles import identical_pair
 from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 from roughgas.kernel.state import COLLISIONS
 
-response = from_python(contact.response)
+impulse_and_spin_change = from_python(contact.impulse_and_spin_change)
 direction = from_python(contact.direction)
 DISKS = settings("gas", 160, [50, 50])
 SPHERES = settings("spheres", 64, [12, 12, 12])
@@ -161,7 +161,7 @@ def test_inverse_coefficients_undo_a_contact(margins, dimension):
 def applied(material, q, n, v, w):
     """Relative velocity and sum of the spins after a contact."""
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    impulse, spin_change = response(
+    impulse, spin_change = impulse_and_spin_change(
         Effects(spin=Spin(q)), material, *vectors, 0.5, identical_pair(Spin(q))
     )
     return v - 2.0 * np.array(impulse), w + 2.0 * np.array(spin_change)

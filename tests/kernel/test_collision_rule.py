@@ -11,12 +11,12 @@ from slow_cases import slow_but
 from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
-from roughgas.kernel.contact import response as compiled_response
+from roughgas.kernel.contact import impulse_and_spin_change as compiled_rule
 from roughgas.kernel.particles import identical_pair
 from roughgas.kernel.state import BOUNDARY_HITS, EXPONENT
 
 PAIR, WALL = 0.5, 1.0
-response = from_python(compiled_response)
+impulse_and_spin_change = from_python(compiled_rule)
 MATERIALS = [(r, beta) for r in (0.0, 0.3, 0.9, 1.0) for beta in (-1.0, -0.4, 0.0, 0.7, 1.0)]
 
 
@@ -39,7 +39,9 @@ def exchange(material, n, v, w, share=PAIR, mu=None):
     q = theory.moment_of_inertia(len(n))
     effects = Effects(spin=Spin(q), friction=None if mu is None else Friction(mu, q))
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(effects, material, *vectors, share, identical_pair(Spin(q)))
+    push, turn = impulse_and_spin_change(
+        effects, material, *vectors, share, identical_pair(Spin(q))
+    )
     return np.array(push), np.array(turn)
 
 
@@ -90,7 +92,9 @@ def test_a_contact_sticks_inside_the_cone_and_slides_on_it(dimension, share):
 
 def test_contacts_without_spin_have_no_tangential_impulse():
     n, v = (1.0, 0.0), (-2.0, 3.0)
-    push, turn = response(Effects(), (0.5, 0.7), n, v, None, PAIR, identical_pair(None))
+    push, turn = impulse_and_spin_change(
+        Effects(), (0.5, 0.7), n, v, None, PAIR, identical_pair(None)
+    )
     assert push == (-1.5, 0.0) and turn is None
 
 

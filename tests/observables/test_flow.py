@@ -14,7 +14,8 @@ from roughgas.observables.flow import (
     local_energies,
 )
 from roughgas.simulation.point import flow_verdict
-from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 
 BOX = (40, 60)
 SPIN = {"spin": {"inertia": 0.5}}

@@ -20,7 +20,7 @@ from roughgas.observables import OBSERVABLES
 from roughgas.observables.frames import SpeciesGroup
 from roughgas.observables.plugin import SUFFIX
 from roughgas.simulation.observable_tracker import ObservableUnpickler
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 SPECIES = SpeciesGroup(30, 1.0), SpeciesGroup(50, 1.5)
 PARTICLE_ARRAYS = ("position", "velocity", "spin", "radius", "mass", "inertia", "species_of")

@@ -14,14 +14,13 @@ from roughgas.observables import OBSERVABLES
 from roughgas.observables.averages import averaged
 from roughgas.observables.plugin import Observable
 from roughgas.simulation.trust import ObservedWindow, trust_in
-from roughgas.statistics.errors import (
+from roughgas.statistics.errors import effective_samples, half_width
+from roughgas.statistics.sample_sizes import (
     MINIMUM_SAMPLE_SIZE,
     NO,
     UNKNOWN,
     YES,
     SampleSize,
-    effective_samples,
-    half_width,
     verdict,
 )
 

@@ -9,7 +9,7 @@ from roughgas.base import InputError
 from roughgas.results.comparison import Row, read_rows, write_rows
 from roughgas.results.evidence_page import as_markdown
 from roughgas.results.row_verdicts import combine
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 
 def row(theirs, ours, **texts):

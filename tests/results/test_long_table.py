@@ -4,7 +4,7 @@ import pytest
 
 from roughgas.base import InputError
 from roughgas.results.long_table import LongRow, read_long_rows, write_long_rows
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 ROWS = [
     LongRow("viscosity", {"kind": "spheres", "q": 0.4}, Estimate(1.05, 0.002, 79.0), 0.25),

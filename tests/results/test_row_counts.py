@@ -6,7 +6,7 @@ import pytest
 
 from roughgas.results.comparison import Row
 from roughgas.results.row_counts import row_counts
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 EXACT, UNPUBLISHED = 0.0, math.nan
 

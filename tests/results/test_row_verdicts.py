@@ -18,7 +18,7 @@ from roughgas.results.row_verdicts import (
     largest_undetected,
     verdicts,
 )
-from roughgas.statistics.errors import SIGNIFICANCE, Estimate
+from roughgas.statistics.estimates import SIGNIFICANCE, Estimate
 from roughgas.statistics.false_discovery import false_discovery_level
 from roughgas.statistics.student import t_quantile
 

@@ -9,15 +9,12 @@ from raw import build, run_point
 from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
-from roughgas.simulation.energies import (
-    energies,
-    fitted_flow,
-    ratio_of_means,
-    vertical_share,
-)
+from roughgas.simulation.energies import energies, fitted_flow, vertical_share
+from roughgas.simulation.energy_averages import ratio_of_means
 from roughgas.simulation.energy_balance import balance, energy_exchange, imbalance
 from roughgas.simulation.point import NUMBERS_OF_FLAG, _withdrawn_verdicts
-from roughgas.statistics.errors import NO, UNKNOWN, YES, blocking
+from roughgas.statistics.errors import blocking
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 
 PARTICLES, BOX, SHEAR_RATE = 12, 50.0, 0.04
 

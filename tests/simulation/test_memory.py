@@ -17,13 +17,13 @@ from roughgas.simulation.gas_memory import (
     spin_share,
 )
 from roughgas.simulation.simulation import Simulation
-from roughgas.statistics.errors import (
+from roughgas.statistics.errors import autocorrelation_time
+from roughgas.statistics.sample_sizes import (
     MINIMUM_SAMPLE_SIZE,
     NO,
     UNKNOWN,
     YES,
     SampleSize,
-    autocorrelation_time,
     describe_shortfall,
     verdict,
 )

@@ -12,7 +12,7 @@ from raw import build, cooling, run_point, steady, typed
 from roughgas.base import InputError
 from roughgas.simulation import error_target, progress
 from roughgas.simulation.progress import ProgressBar, RunProgress
-from roughgas.statistics.errors import NO, UNKNOWN, YES
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 
 STEADY = {"kind": "steady", "equilibrate": 30.5, "measure": 50, "sample_every": 0.3}
 COOLING = {"kind": "cooling", "replicas": 4, "thermalise": 20, "relaxation_times": 8}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from raw import build, run_point
 
-from roughgas.statistics.errors import UNKNOWN, YES
+from roughgas.statistics.sample_sizes import UNKNOWN, YES
 from roughgas.statistics.student import wallace_sigmas
 
 SPIN = {"spin": {"inertia": 0.5}}

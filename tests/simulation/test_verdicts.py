@@ -17,7 +17,7 @@ from roughgas.base import InputError, SilentError
 from roughgas.kernel import loop
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.simulation import Simulation
-from roughgas.statistics.errors import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES
+from roughgas.statistics.sample_sizes import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES
 from roughgas.statistics.student import wallace_sigmas
 
 STEADY = {"kind": "steady", "equilibrate": 20.0, "measure": 20.0, "sample_every": 1.0}

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 
 from roughgas.statistics.errors import (
-    Estimate,
-    SampleSize,
     autocorrelation_time,
     block_means,
     blocking,
@@ -24,6 +22,8 @@ from roughgas.statistics.errors import (
     stderr_over_seeds,
     sum_error,
 )
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import SampleSize
 from roughgas.statistics.steady_state import find_plateau, is_equilibrated
 
 # Samples and integrated autocorrelation time of AR(1) series, at least 20 such times long.

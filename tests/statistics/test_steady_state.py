@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.errors import UNKNOWN, SampleSize
+from roughgas.statistics.sample_sizes import UNKNOWN, SampleSize
 from roughgas.statistics.steady_state import (
     cut_sigmas,
     detect_start,

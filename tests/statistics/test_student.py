@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from roughgas.statistics.errors import POWER, SIGNIFICANCE, Estimate
+from roughgas.statistics.estimates import POWER, SIGNIFICANCE, Estimate
 from roughgas.statistics.student import (
     t_density,
     t_probability,

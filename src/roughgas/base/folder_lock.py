@@ -123,13 +123,14 @@ def advice(holding: Holder | None) -> str:
         )
     pid, host, begun = holding
     on_host = "" if host == socket.gethostname() else f" on {host}"
+    age = duration_text(time.time() - begun)
     return (
-        f"{head}process {pid}{on_host}, which began {age(time.time() - begun)} ago; wait until it "
+        f"{head}process {pid}{on_host}, which began {age} ago; wait until it "
         f"ends, or stop it{on_host} with `kill -INT {pid}`, or with `kill -KILL {pid}` if it hangs"
     )
 
 
-def age(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """Return a duration (s) in its two largest units: 45 s, 3 min, 2 h 5 min."""
     elapsed = int(max(seconds, 0.0))
     days, hours, minutes = elapsed // 86400, elapsed // 3600 % 24, elapsed // 60 % 60

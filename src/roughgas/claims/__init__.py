@@ -30,7 +30,7 @@ from roughgas.claims.verdicts import (
     points,
     text,
 )
-from roughgas.statistics.errors import POWER, SIGNIFICANCE, SIGNIFICANT
+from roughgas.statistics.estimates import POWER, SIGNIFICANCE, SIGNIFICANT
 
 GENERAL_MODULES = (verdicts, driven)
 """Modules whose samples and judges are available to every table."""

@@ -17,7 +17,7 @@ from roughgas.base import Record, as_json
 from roughgas.base.files import write_text
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED, theory_of
 from roughgas.data.reduced import STEADY_SHARE, read_reduced
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_walls"
 SHEARED_POINTS = {

@@ -16,7 +16,8 @@ import xarray as xr
 
 from roughgas.base import Attributes
 from roughgas.data.reduced import GRID_DIMS, STEADY_SHARE, read_by_name
-from roughgas.statistics.errors import Estimate, sum_error
+from roughgas.statistics.errors import sum_error
+from roughgas.statistics.estimates import Estimate
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
 

@@ -33,7 +33,8 @@ from roughgas.simulation.finished_points import FinishedPoints
 from roughgas.simulation.initial_states import InitialState
 from roughgas.simulation.run_points import simulate_points, variant_attributes
 from roughgas.simulation.saved_states import initial_states_of, with_noise_source
-from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 from roughgas.theory.prediction import describe_collisional_average
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")

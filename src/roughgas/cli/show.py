@@ -36,7 +36,8 @@ from roughgas.effects.species import packing
 from roughgas.results.tables import rows as rows_of
 from roughgas.results.tables import wide_note
 from roughgas.scene.settings import scene_settings
-from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
+from roughgas.statistics.estimates import Estimate, decimals_of
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 from roughgas.theory.prediction import (
     describe_collisional_average,
     equation_of,

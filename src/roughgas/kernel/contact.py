@@ -90,7 +90,7 @@ def collide(state, scene, i, j, time):
     pair = pair_of(bodies, effects.spin, i, j)
     material = material_of(bodies, scene, i, j)
     material = _effective_material(effects, material, state, i, j, time, dot(v, n))
-    impulse, spin_change = response(effects, material, n, v, w, 0.5, pair)
+    impulse, spin_change = impulse_and_spin_change(effects, material, n, v, w, 0.5, pair)
     min_departure = STICKING * state.clock[TYPICAL_SPEED]
     impulse = _with_minimum_departure(impulse, n, v, 0.5 * pair.mass, min_departure)
     state.counts[SLOW_CONTACTS] += -dot(v, n) < min_departure
@@ -138,7 +138,7 @@ def collide_with_wall(state, scene, account, i, time, material, n, wall_velocity
     v = subtract(velocity, wall_velocity)
     pair = pair_with_wall(bodies, effects.spin, i)
     material = _effective_material(effects, material, state, i, NOBODY, time, dot(v, n))
-    impulse, spin_change = response(effects, material, n, v, w, 1.0, pair)
+    impulse, spin_change = impulse_and_spin_change(effects, material, n, v, w, 1.0, pair)
     impulse = _with_minimum_departure(impulse, n, v, pair.mass, min_departure)
     velocity_loss = divide(impulse, mass_of(bodies, i))
     set_path(state, scene, i, position, subtract(velocity, velocity_loss), time)
@@ -177,7 +177,7 @@ def direction(distance, x):
 
 
 @jit
-def response(effects, material, n, v, w, share, pair):
+def impulse_and_spin_change(effects, material, n, v, w, share, pair):
     """Return the momentum passed from i to j, and the change of each spin a w, in one contact.
 
     `material` is (r, beta); n the unit normal from j, or from a wall, to i; v the relative velocity

@@ -13,13 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.statistics.errors import (
-    SampleSize,
     autocorrelation_time,
     blocking,
     degrees_of_freedom,
     effective_samples,
     period_means,
 )
+from roughgas.statistics.sample_sizes import SampleSize
 
 NamedArrays = Mapping[str, np.ndarray]
 """Arrays by name."""

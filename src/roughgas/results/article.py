@@ -11,7 +11,7 @@ from pathlib import Path
 
 from roughgas.base import InputError, NamedValues, Record, __version__, import_extra, on_one_line
 from roughgas.base.files import atomic_write
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 TEXT = "article.typ"
 QUOTED_NUMBER = re.compile(r'#n\("([^"]*)"\)')

@@ -15,7 +15,7 @@ import numpy as np
 
 from roughgas.base import InputError, NamedValues, Record, in_csv
 from roughgas.base.files import atomic_write
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 TIERS = {
     "exact": "exact result",

@@ -21,7 +21,7 @@ from roughgas.results.row_verdicts import (
     detectable_share,
     judge,
 )
-from roughgas.statistics.errors import POWER
+from roughgas.statistics.estimates import POWER
 
 Group = tuple[str, str, str]
 """Quantity, tier and source that the rows of a comparison share."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from roughgas.base import InputError
 from roughgas.base.files import atomic_write
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 COLUMNS = ("quantity", "parameters", "value", "stderr", "dof", "cpu_hours")
 

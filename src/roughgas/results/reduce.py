@@ -51,7 +51,8 @@ from roughgas.data.variables import (
 )
 from roughgas.data.variables import POOLED as POOLED_ORIGIN
 from roughgas.results.axes import POINT_ATTRIBUTES, axes_of, coordinate, index_of, position_of
-from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled_error
+from roughgas.statistics.errors import pooled_error
+from roughgas.statistics.sample_sizes import NO, UNKNOWN, YES
 from roughgas.statistics.steady_state import is_bimodal
 from roughgas.theory.prediction import LANGEVIN_ATTRIBUTE, SPECIES_ATTRIBUTE, equation_of
 

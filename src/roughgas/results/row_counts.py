@@ -18,7 +18,7 @@ from roughgas.results.row_verdicts import (
     detectable_share,
     judge,
 )
-from roughgas.statistics.errors import SIGNIFICANT
+from roughgas.statistics.estimates import SIGNIFICANT
 from roughgas.statistics.student import t_quantile
 
 NAMES = {

@@ -23,7 +23,8 @@ from roughgas.results.comparison import (
     row_cells,
     write_table,
 )
-from roughgas.statistics.errors import SIGNIFICANCE, Estimate, stderr_over_seeds
+from roughgas.statistics.errors import stderr_over_seeds
+from roughgas.statistics.estimates import SIGNIFICANCE, Estimate
 from roughgas.statistics.false_discovery import false_discovery_level
 
 AGREES, DIFFERS, NO_ERROR = "agrees", "differs", "differs, no error published"

@@ -18,12 +18,10 @@ from roughgas.base.fields import described, whole
 from roughgas.effects import inertia, reference_speed
 from roughgas.effects.species import packing
 from roughgas.scene import Scene, elastic, theory_mixture
-from roughgas.simulation.energies import (
-    Columns,
+from roughgas.simulation.energies import Columns, ratio, restored
+from roughgas.simulation.energy_averages import (
     cooling_species_averages,
-    ratio,
     ratio_of_means,
-    restored,
     trust_of_means,
 )
 from roughgas.simulation.energy_balance import energy_exchange
@@ -34,13 +32,8 @@ from roughgas.simulation.initial_states import InitialState
 from roughgas.simulation.leg import Changes, Leg
 from roughgas.simulation.replicas import COOLING_LEG, CooledReplicas, stacked_runs
 from roughgas.simulation.simulation import Simulation
-from roughgas.statistics.errors import (
-    MINIMUM_SAMPLE_SIZE,
-    UNKNOWN,
-    SampleSize,
-    StandardError,
-    autocorrelation_time,
-)
+from roughgas.statistics.errors import StandardError, autocorrelation_time
+from roughgas.statistics.sample_sizes import MINIMUM_SAMPLE_SIZE, UNKNOWN, SampleSize
 from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
 

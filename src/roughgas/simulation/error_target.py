@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from roughgas.base import NamedValues
 from roughgas.simulation.experiment import Schedule
-from roughgas.statistics.errors import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES
+from roughgas.statistics.sample_sizes import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES
 
 TARGET_KEY = "target_stderr"  # of a schedule
 BLOCK_LIMIT = 100  # so that the error falls by a factor of ten

@@ -24,7 +24,8 @@ from roughgas.simulation.free_flight import in_starting_order
 from roughgas.simulation.gas import Batch, Gas
 from roughgas.simulation.leg import Changes, Leg
 from roughgas.simulation.tracker import Tracker
-from roughgas.statistics.errors import Estimate, stderr_over_seeds
+from roughgas.statistics.errors import stderr_over_seeds
+from roughgas.statistics.estimates import Estimate
 
 FLOW_SAMPLES = 10
 """Flow samples in a measurement of the planned length."""

@@ -17,7 +17,8 @@ from roughgas.kernel import hooks
 from roughgas.scene import Scene, assumes_flow, build, conserves_momentum, shear_rate
 from roughgas.simulation import protocols
 from roughgas.simulation.checkpoint import Checkpoint
-from roughgas.simulation.energies import R_at_fixed_momentum, species_names
+from roughgas.simulation.energies import species_names
+from roughgas.simulation.energy_averages import R_at_fixed_momentum
 from roughgas.simulation.experiment import Experiment
 from roughgas.simulation.gas import Costs, Gas
 from roughgas.simulation.initial_checks import checked_initial_states
@@ -26,7 +27,8 @@ from roughgas.simulation.point_trackers import ContactLog, LastStates
 from roughgas.simulation.simulation import Simulation
 from roughgas.simulation.steady import LACK_VARIABLE
 from roughgas.simulation.tracker import Tracker
-from roughgas.statistics.errors import UNKNOWN, YES, Estimate
+from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.sample_sizes import UNKNOWN, YES
 from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES_ATTRIBUTE
 from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE

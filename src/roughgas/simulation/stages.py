@@ -21,13 +21,11 @@ from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import Scene, build
 from roughgas.simulation import steady
-from roughgas.simulation.energies import (
-    Energies,
+from roughgas.simulation.energies import Energies, energies_of, ratio, species_energies
+from roughgas.simulation.energy_averages import (
     contact_averages,
     driven_species_averages,
-    energies_of,
-    ratio,
-    species_energies,
+    mean_energies_and_R,
     trust_of_means,
 )
 from roughgas.simulation.energy_balance import energy_exchange, exchange_series
@@ -50,7 +48,7 @@ from roughgas.simulation.stage_sampling import (
     common_spacing,
 )
 from roughgas.simulation.wall_types import with_common_wall_types
-from roughgas.statistics.errors import UNKNOWN
+from roughgas.statistics.sample_sizes import UNKNOWN
 
 Temperature = Annotated[
     float,
@@ -416,7 +414,7 @@ def _measured_averages(total, species, first, stages):
     series run through all stages.
     """
     every, window = _spacing(stages, measured=True), total.map(lambda energy: energy[first:])
-    weights, means = None, steady.mean_energies_and_R(window, 1, every or math.nan)
+    weights, means = None, mean_energies_and_R(window, 1, every or math.nan)
     if every is None:
         weights = np.concatenate([stage.instants.intervals() for stage in stages if stage.measured])
         means |= _means_over_time(window, weights)

@@ -19,13 +19,15 @@ from roughgas.scene import Scene, assumes_flow, theory_mixture, walls_of
 from roughgas.simulation.energies import (
     Columns,
     Energies,
-    contact_averages,
-    driven_species_averages,
     energies,
     ratio,
-    ratio_of_means,
     shear_rates,
     species_energies,
+)
+from roughgas.simulation.energy_averages import (
+    contact_averages,
+    driven_species_averages,
+    mean_energies_and_R,
     trust_of_means,
     vertical_share,
 )
@@ -39,15 +41,13 @@ from roughgas.simulation.leg import Leg
 from roughgas.simulation.point_trackers import Samples
 from roughgas.simulation.simulation import Simulation
 from roughgas.statistics.errors import (
+    period_means,
+)
+from roughgas.statistics.sample_sizes import (
     MINIMUM_SAMPLE_SIZE,
     YES,
     SampleSize,
-    StandardError,
-    autocorrelation_time,
-    blocking,
-    degrees_of_freedom,
     describe_shortfall,
-    period_means,
     verdict,
 )
 from roughgas.statistics.steady_state import detect_start, is_equilibrated
@@ -425,37 +425,6 @@ def _measurement_start(series, planned, length, per_period):
     if planned + length - start < MIN_SHARE_LEFT * length:
         return first, False
     return start, is_equilibrated(*means, start=start // per_period)
-
-
-def mean_energies_and_R(window, per_period, every):
-    """Return E_trans, E_rot and R averaged over a window, with errors, by name; steady or not.
-
-    `window` are the energies (samples,), `per_period` the samples in a period of the drive, and
-    `every` is the interval between samples in T.
-    """
-    averages = {
-        "E_trans": window.translational.mean(),
-        "E_trans_stderr": blocking(period_means(window.translational, per_period))[0],
-    }
-    if window.rotational is None:
-        return averages
-    R = ratio(window)
-    R_periods = period_means(R, per_period)
-    stderr, blocks = blocking(R_periods)
-    error, correlation_time = (
-        StandardError(stderr, degrees_of_freedom(blocks)),
-        autocorrelation_time(R_periods),
-    )
-    return averages | {
-        "R": R.mean(),
-        "R_stderr": error.stderr,
-        "R_dof": error.dof,
-        "R_ci95": error.half_width(0.95),
-        "R_ratio_of_means": ratio_of_means(window),
-        "E_rot": window.rotational.mean(),
-        "E_rot_stderr": blocking(period_means(window.rotational, per_period))[0],
-        "autocorrelation_time": correlation_time * per_period * every,
-    }
 
 
 def period_mean_series(time, window, samples_per_value):

@@ -14,7 +14,14 @@ from roughgas.base import Record
 from roughgas.scene import Scene
 from roughgas.simulation import protocols
 from roughgas.simulation.experiment import Experiment
-from roughgas.statistics.errors import MINIMUM_SAMPLE_SIZE, NO, UNKNOWN, YES, SampleSize, verdict
+from roughgas.statistics.sample_sizes import (
+    MINIMUM_SAMPLE_SIZE,
+    NO,
+    UNKNOWN,
+    YES,
+    SampleSize,
+    verdict,
+)
 
 
 class ObservedWindow(NamedTuple):

@@ -23,7 +23,7 @@ from msgspec import to_builtins
 from roughgas.base import CollapseError, InputError, NamedValues, Record, markdown, short_repr
 from roughgas.base.fields import OwnSettings
 from roughgas.data.variables import Variable, described
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 if TYPE_CHECKING:
     from roughgas.scene.settings import SceneSettings

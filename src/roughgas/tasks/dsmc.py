@@ -20,7 +20,7 @@ from roughgas.base import InputError
 from roughgas.compiling.jit import compiled, entry, jit
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
-from roughgas.kernel.contact import response
+from roughgas.kernel.contact import impulse_and_spin_change
 from roughgas.kernel.mathematics import add_scaled, dot, read, scale, subtract, write
 from roughgas.kernel.particles import change_spin, identical_pair, spin_of
 from roughgas.theory import arguments, moment_of_inertia
@@ -223,7 +223,9 @@ def collide(gas, material, i, j, n, v):
     w_i, w_j = spin_of(gas.spin, axes, i), spin_of(gas.spin, axes, j)
     restitutions = material.restitution, material.roughness
     spin_shares = identical_pair(effects.spin)
-    push, turn = response(effects, restitutions, n, v, add_scaled(w_i, w_j, 1.0), 0.5, spin_shares)
+    push, turn = impulse_and_spin_change(
+        effects, restitutions, n, v, add_scaled(w_i, w_j, 1.0), 0.5, spin_shares
+    )
     write(gas.velocity, i, 0, subtract(read(gas.velocity, i, 0, axes), push))
     write(gas.velocity, j, 0, add_scaled(read(gas.velocity, j, 0, axes), push, 1.0))
     change_spin(gas.spin, i, w_i, turn)

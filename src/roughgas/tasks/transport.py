@@ -33,7 +33,7 @@ from roughgas import theory
 from roughgas.compiling.jit import compiled, entry
 from roughgas.kernel.mathematics import dot, read
 from roughgas.kernel.particles import spin_of
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 from roughgas.tasks import dsmc, mean_estimate
 from roughgas.tasks.dsmc import COLLISIONS, TIME, collide_until
 

@@ -9,7 +9,7 @@ from tests.show.figures.legibility import faults
 
 from roughgas.results.comparison import Row
 from roughgas.show.figures.evidence import BIN, END, NAMED_ROWS, draw, expected_counts
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 
 def rows(source, tier, t, dof=math.inf):

@@ -23,7 +23,8 @@ from roughgas.data.variables import CLOCKS, ENERGY, START, third_axis
 from roughgas.show.figures import panel
 from roughgas.show.figures.panel import series
 from roughgas.show.style import GREY, HEIGHT, LINE_STYLES, THEORY, TWO_WIDE, WIDTH, Style
-from roughgas.statistics.errors import Estimate, block_means
+from roughgas.statistics.errors import block_means
+from roughgas.statistics.estimates import Estimate
 from roughgas.theory.prediction import equation_of
 
 MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 3
