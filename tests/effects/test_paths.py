@@ -60,7 +60,7 @@ class BruteForcePath:
         self.move(duration)
 
 
-QUICK_GASES = {"heated", "sheared", "bed", "bath", "spheres"}
+QUICK_GASES = {"heated", "bath", "spheres"}
 
 
 @pytest.mark.parametrize("name", slow_but(QUICK_GASES, GASES))

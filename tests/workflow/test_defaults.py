@@ -5,6 +5,7 @@ import os
 import pytest
 import snakemakes
 from project import ROOT, Project, jobs_by_rule
+from slow_cases import slow_but
 
 MODULE = """
 module roughgas:
@@ -45,7 +46,7 @@ def test_the_file_of_the_workflow_catalogue_makes_the_figures(source, tmp_path):
     assert jobs["figure"] == 4 and jobs["by_default"] == 1
 
 
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", slow_but(FILES[:1], FILES))
 @pytest.mark.parametrize(
     "host",
     ["after", *(pytest.param(name, marks=pytest.mark.slow) for name in ("before", "without"))],

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from project import ROOT, Project
+from slow_cases import slow_but
 
 from roughgas import config, simulate
 from roughgas.base import sorted_json
@@ -24,6 +25,14 @@ POINTS = {
     "quench": "quench/spin_share0.5",
 }
 """Path of a variant of each experiment of the page; its point is outside the sweep."""
+DIFFERENCES = [
+    "  cooling: {effects: {contact_time: null}}\n",
+    "  cooling: {particles: 50}\nscales: {small: {cooling: {particles: 30}}, tiny: {}}\n",
+    "  cooling: {particles: 50}\n",
+    "  vibrated_smooth_walls: {extends: cooling}\n",  # of another parent
+    "  drives.heated: {particles: 50}\n",
+    "  mine: {extends: sheared}\nscale: tiny\n",
+]
 
 
 @pytest.fixture
@@ -48,7 +57,7 @@ def test_the_page_has_these_examples():
     assert {name for names in NAMES for name in names} == {*POINTS}
 
 
-@pytest.mark.parametrize("text", EXAMPLES, ids=map("-".join, NAMES))
+@pytest.mark.parametrize("text", slow_but(EXAMPLES[:2], EXAMPLES), ids=map("-".join, NAMES))
 def test_all_readers_agree_on_an_example(text, folder):
     by_library, by_workflow = config.load(write(text)), by_snakemake("mine.yaml")
     for name in parse_yaml(text, "the page"):
@@ -58,17 +67,7 @@ def test_all_readers_agree_on_an_example(text, folder):
             assert settings == config.load_experiment("mine.yaml", name, scale).raw
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "  cooling: {particles: 50}\n",  # a change
-        "  cooling: {effects: {contact_time: null}}\n",
-        "  vibrated_smooth_walls: {extends: cooling}\n",  # of another parent
-        "  cooling: {particles: 50}\nscales: {small: {cooling: {particles: 30}}, tiny: {}}\n",
-        "  drives.heated: {particles: 50}\n",
-        "  mine: {extends: sheared}\nscale: tiny\n",
-    ],
-)
+@pytest.mark.parametrize("text", slow_but(DIFFERENCES[:2], DIFFERENCES))
 def test_a_file_may_hold_differences_alone(text, folder):
     by_library, by_workflow = config.load(write(text)), by_snakemake("mine.yaml")
     assert {**vars(by_library), "source": 0, "studies": 0} == {
