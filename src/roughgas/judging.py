@@ -30,6 +30,7 @@ from roughgas.claims.verdicts import (
     difference,
     effect_of_restitution,
     grade,
+    is_large,
     over_seeds,
     point_text,
     points,

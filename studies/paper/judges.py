@@ -20,7 +20,6 @@ from roughgas.judging import (
     HOLDS,
     QUALIFIED,
     SIGNIFICANCE,
-    SIGNIFICANT,
     Estimate,
     Finding,
     NotTestedError,
@@ -32,6 +31,7 @@ from roughgas.judging import (
     difference,
     effect_of_restitution,
     grade,
+    is_large,
     over_seeds,
     predicted_ratio,
     ratio_sample,
@@ -97,7 +97,7 @@ def only_rough_walls_matter(
     largest, location = moved.largest()
     reason = f"Rough elastic walls shift R by up to {text(largest)} at {location}"
     numbers = [("largest shift by rough elastic walls", largest)]
-    verdict = HOLDS if largest.is_significant and abs(largest.value) > AGREE else FAILS
+    verdict = HOLDS if is_large(largest, AGREE) else FAILS
     for name, data in (("particle-like", particle), ("smooth", smooth)):
         shift_by_walls = shift(bed, data)
         still, other_location = shift_by_walls.largest()
@@ -221,7 +221,7 @@ def noisier_than_vibration(sheared: xr.Dataset, bed: xr.Dataset) -> Finding:
         verdict = HOLDS if paper.value >= CONSIDERABLY else QUALIFIED
     elif time.is_significant and time.value > 0:
         verdict = QUALIFIED
-    elif paper.value + SIGNIFICANT * paper.stderr > CONSIDERABLY:
+    elif not paper.detectable <= CONSIDERABLY:
         raise NotTestedError(f"the ratio of scatters, {_ratio(paper)}, is too uncertain")
     ratios = ", ".join(f"{_ratio(log)} {length}" for length, log in logs.items())
     reason = f"The scatter between sheared runs is that between vibrated ones times {ratios}"
@@ -282,7 +282,7 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
     """R at the lowest r - R at the highest is large at some beta."""
     effect = effect_of_restitution(cooling)
     largest, _ = effect.largest()
-    size = abs(largest.value) if largest.is_significant else 0.0
+    considerable, large = is_large(largest, AGREE), is_large(largest, DISAGREE)
     low, high = cooling.r.values[[0, -1]]
     beta = effect.coordinates["beta"][np.argmax(np.abs(effect.value))]
     at_low, at_high = (predicted_ratio(cooling.attrs, r, beta) for r in (low, high))
@@ -291,7 +291,7 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
         f"beta = {beta:g}, where the theory of free cooling expects {at_low - at_high:+.4f}."
     )
     numbers = (("largest difference", largest), ("mean difference", effect.mean()))
-    return Finding(grade(size > DISAGREE, size > AGREE), reason, numbers)
+    return Finding(grade(large, considerable), reason, numbers)
 
 
 def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
@@ -304,7 +304,7 @@ def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
     rest = change._replace(value=change.value - expected.value)
     finding = agreement(rest, "the difference of the two theories")
     largest, location = change.largest()
-    if not (largest.is_significant and abs(largest.value) > DISAGREE):
+    if not is_large(largest, DISAGREE):
         finding = finding._replace(verdict=FAILS)
     elif finding.verdict == FAILS and rest.rms() < change.rms() / 3:
         finding = finding._replace(verdict=QUALIFIED)
@@ -321,7 +321,7 @@ def restitution_matters_when_cooling(cooling: xr.Dataset, bed: xr.Dataset) -> Fi
     beyond_noise = (np.mean(effect.value**2 - effect.stderr**2) for effect in effects)
     free, driven = (float(np.sqrt(max(square, 0.0))) for square in beyond_noise)
     ratio = free / max(driven, 1e-12)
-    matters = largest.is_significant and abs(largest.value) > AGREE
+    matters = is_large(largest, AGREE)
     times = f"{ratio:.1f} times as large" if ratio < 100 else "more than 100 times as large"
     reason = (
         f"From the highest r to the lowest, R changes by up to {text(largest)} when cooling, by up "

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from tests.claims.gases import (
     ROUGH,
     bump,
@@ -37,6 +38,9 @@ CASES = {  # makers of datasets with an effect of some size; sizes for each verd
 }
 
 
+UNCERTAIN_WALLS = [
+    gas.assign(R_stderr=xr.full_like(gas.R_stderr, 0.05)) for gas in walls(rough=0.0)
+]
 COUPLE = "rough_walls_couple_to_the_vertical"
 
 
@@ -94,6 +98,17 @@ def test_one_stray_point_qualifies_but_does_not_refute(judged):
         (COUPLE, [smooth_disks_between_rough_walls(error=0.03)], "too large to tell"),
         (COUPLE, [smooth_disks_between_rough_walls(R_dof=1.0)], "energy of spins"),
         ("shear_fails_unsubtracted", [reduced("sheared")], "no un-subtracted R"),
+        (
+            "only_rough_walls_matter",
+            UNCERTAIN_WALLS,
+            "may hide a deviation of 0.02",
+        ),
+        ("cooling_depends_on_r", [cooling(error=0.2)], "may hide a deviation"),
+        (
+            "restitution_matters_when_cooling",
+            [cooling(error=0.2), reduced()],
+            "may hide a deviation of 0.02",
+        ),
         ("shear_noisier", [sheared(seeds=1), reduced(seeds=1)], "several seeds"),
         ("cooling_reaches_a_constant", [cooling().drop_vars("R_drift")], "no time series"),
     ],

@@ -345,6 +345,18 @@ def check_power(detectable: float, refuting: float) -> None:
         )
 
 
+def is_large(value: Estimate, tolerance: float) -> bool:
+    """Return whether `value` is significant, and its size above `tolerance`.
+
+    Raises NotTestedError if it is not significant, and its error hides deviations of `tolerance`.
+    """
+    if not (value.is_significant or value.detectable <= tolerance):
+        raise NotTestedError(
+            f"{text(value)} is not significant, and the error may hide a deviation of {tolerance:g}"
+        )
+    return value.is_significant and abs(value.value) > tolerance
+
+
 def agreement(sample: Sample, reference: str) -> Finding:
     """Judge whether the differences in `sample` are compatible with zero; return the finding.
 
