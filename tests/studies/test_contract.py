@@ -66,6 +66,7 @@ each_figure = pytest.mark.parametrize(
 
 @any_study
 def test_a_study_has_small_settings_and_all_that_the_workflow_calls(name):
+    assert name.partition(".")[0] in CONFIG.studies, CONFIG.refused
     runs, results = modules_of(name)
     assert {"tasks", "run"} <= vars(runs).keys() and {"combine", "table"} <= vars(results).keys()
     assert described(name)
