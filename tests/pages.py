@@ -235,23 +235,6 @@ def _window(kind):
 # ---------------------------------------------------------------------- variables of datasets
 
 
-def documented(page, name):
-    """The (dimensions, meaning) of each variable of a table that is on its page."""
-    rows = [line[2:-2].split(" | ") for line in written(page, name).splitlines()[2:]]
-    return {
-        row[0].strip("`"): (tuple(row[1].split(", ")) if row[1] else (), row[-1]) for row in rows
-    }
-
-
-def check_study(name, data):
-    """Whether the combined data of a study hold all that the page documents, and nothing else."""
-    present = {
-        key: (variable.dims, variable.attrs["long_name"])
-        for key, variable in data.variables.items()
-    }
-    assert documented("data", name) == present
-
-
 def _variables(columns, variables, units=attrgetter("units")):
     """Return a table of variables: dimensions, these columns, and meaning."""
     columns = columns.split()

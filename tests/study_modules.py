@@ -4,7 +4,6 @@ from pathlib import Path
 
 from roughgas.base.files import study_module
 from roughgas.claims import read_study
-from roughgas.tasks import read_variables
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = sorted(path.parent for path in (ROOT / "studies").glob("*/config.yaml"))
@@ -22,18 +21,6 @@ def subject(study):
 
 def quietly(done, total):
     """Report no progress of a task."""
-
-
-def check_variables(study, data):
-    """Whether the data of a study's tasks hold all that its variables.yaml describes, and nothing
-    else."""
-    documented = read_variables(ROOT / "studies" / study / "variables.yaml")
-    expected = {name: (variable.dims, variable.long_name) for name, variable in documented.items()}
-    present = {
-        name: (variable.dims, variable.attrs["long_name"])
-        for name, variable in data.variables.items()
-    }
-    assert present == expected
 
 
 def statements():

@@ -245,6 +245,7 @@ def _run_chunks(advance, samples, progress):
         chunk, seconds = timed(advance, min(chunk_length, samples - first))
         chunks.append(chunk)
         total += seconds
+    progress(samples, samples)
     R = np.concatenate(chunks)
     return R, {"R": R.mean(), "R_stderr": blocking_stderr(R), "cpu_seconds": total}
 

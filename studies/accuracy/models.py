@@ -74,7 +74,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     return xr.Dataset(*jobs[kind](cooling, settings, progress, label))
 
 
-def _reference(cooling, settings, _, label):
+def _reference(cooling, settings, progress, label):
     reference = settings["reference"]
     event_driven_ratios(cooling, WARM_UP, WARM_UP, seed_sequence(settings, REFERENCE))
     length, seed = (
@@ -82,6 +82,7 @@ def _reference(cooling, settings, _, label):
         seed_sequence(settings, REFERENCE, 1 + int(label)),
     )
     R, seconds = timed(event_driven_ratios, cooling, settings["segment"], length, seed)
+    progress(1, 1)
     return ({"R": ("replica", R), "seconds": seconds},)
 
 
@@ -149,7 +150,7 @@ def _run_map(cooling, settings, progress, label):
     return columns, {"beta": [float(value) for value in map_settings["beta"]], "r": float(r)}
 
 
-def _run_density(cooling, settings, _, label):
+def _run_density(cooling, settings, progress, label):
     """Run events at several packing fractions, and DSMC with the same and with a large number of
     particles: the ratio of both corrects for the finite number."""
     density_settings, (r, beta) = settings["density"], label.removeprefix("r").split("-beta")
@@ -162,6 +163,7 @@ def _run_density(cooling, settings, _, label):
         runs.append(
             timed(event_driven_ratios, gas, settings["segment"], density_settings["length"], seed)
         )
+        progress(k + 1, len(density_settings["packings"]))
     R, seconds = zip(*runs, strict=True)
     values = {"R": (("packing", "replica"), np.array(R)), "seconds": ("packing", list(seconds))}
     numbers = {"few": cooling.experiment.particles, "many": settings["map"]["particles"]}

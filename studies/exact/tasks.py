@@ -60,6 +60,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     seeds = seed_sequence(settings, list(gases).index(task)).spawn(settings["runs"])
     if kind == CONTACTS:
         values_of_contacts, seconds = timed(contacts.measure, settings[CONTACTS], gas[0], seeds[0])
+        progress(1, 1)
         columns = {
             name: ((f"contact_{name}",), values) for name, values in values_of_contacts.items()
         }

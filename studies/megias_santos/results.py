@@ -70,7 +70,7 @@ def combine(task_results: Mapping[str, xr.Dataset], settings: Mapping[str, Any])
         for name, value in zip(State._fields, settings["probe"], strict=True)
     }
     values = stack_rows(rows) | stack_rows(gases) | stack_rows(kicked) | scalars
-    return dataset(read_variables(VARIABLES), values, **probe)
+    return dataset(read_variables(VARIABLES), values, seed=settings["seed"], **probe)
 
 
 def extrapolated(particles: np.ndarray, R: np.ndarray) -> tuple[Estimate, Estimate]:

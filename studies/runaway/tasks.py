@@ -69,6 +69,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     if kind == "example":
         step = start(cooling, settings, mu, row["particles"], seeds[0])
         columns, seconds = timed(record_series, step, row["limit"])
+        progress(1, 1)
         values = {name: ("sample", column) for name, column in zip(SERIES, columns, strict=True)}
         return xr.Dataset(values | {"seconds": seconds})
     rows = []

@@ -78,7 +78,7 @@ def draw_inertia(tasks: xr.Dataset) -> Figure:
         _draw_rough(axes, rows, kind)
     panels[0].set_ylabel("coefficient over first approximation")
     keys = panels[0].get_legend_handles_labels()
-    panels[1].legend(*keys, fontsize=6.5, loc="upper right")
+    panels[1].legend(*keys, fontsize=7, loc="upper right")
     _add_messages(panels, ("Perfectly rough elastic spheres", "Perfectly rough elastic disks"))
     return figure
 

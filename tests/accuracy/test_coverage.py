@@ -4,42 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import settings
-from schedules import COOLING, STEADY
-from tests.pages import check_study
+from tests.studies.small_runs import combined, task_run
 from tests.study_modules import module_of_study
 
 from roughgas.statistics.estimates import Estimate
-from roughgas.tasks.running import Experiments
 
 coverage = module_of_study("coverage", "coverage")
-calibrate, one_run, table, tasks = (
-    coverage.calibrate,
-    coverage.one_run,
-    coverage.table,
-    coverage.tasks,
-)
-
-
-def run(task, settings, experiments, progress=lambda done, total: None):
-    return coverage.run(task, settings, Experiments(experiments), progress)
-
-
+calibrate, one_run, table = coverage.calibrate, coverage.one_run, coverage.table
 DOF = 8
-EXPERIMENTS = {
-    "bed": settings("bed", 10, [10, "open"]) | {"schedule": STEADY},
-    "gas": settings("gas", 10, [20, 20]) | {"schedule": COOLING},
-}
-SETTINGS = {
-    "seed": 1,
-    "repetitions": 8,
-    "pooled": 4,
-    "reference": {"seeds": 2, "length": 20},
-    "corners": [
-        {"experiment": "bed", "r": "0.9", "beta": "-0.5", "schedule": {"measure": 30}},
-        {"experiment": "gas", "r": "0.9", "beta": "0", "schedule": {"plateau": 30}},
-    ],
-}
 
 
 def honest(rng, runs, excess=1.0, bias=0.0):
@@ -88,26 +60,17 @@ def test_runs_that_state_no_error_hold_no_truth():
     assert share.stderr > 0.0
 
 
-@pytest.fixture(scope="module")
-def task_results():
-    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
-
-
-def test_every_corner_has_its_runs_and_its_truth(task_results):
-    data = coverage.combine(task_results, SETTINGS)
+def test_every_corner_has_its_runs():
+    data = combined("coverage.coverage")
     assert list(data.corner.values) == ["bed_r0.9_beta-0.5", "gas_r0.9_beta0"]
     assert np.all(data.repetitions == 8)
     assert np.all((data.coverage >= 0) & (data.coverage <= 1))
     assert np.all(data.cpu_seconds > 0)
-    check_study("coverage", data)
     share = 100 * float(data.coverage.sel(corner="bed_r0.9_beta-0.5", way="one run", level=0.95))
     row = table(data).splitlines()[4].split(" | ")
     assert float(row[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)
 
 
-def test_the_truth_is_measured_for_longer_and_from_other_seeds(task_results):
-    for corner in task_results.values():
-        assert not np.isin(corner.truth_R, corner.R).any()
-        assert len(np.unique(corner.R)) == corner.sizes["run"]
-    bed = task_results["bed_r0.9_beta-0.5"]
+def test_the_truth_is_measured_for_longer():
+    bed = task_run("coverage.coverage", "bed_r0.9_beta-0.5").result
     assert bed.truth_R_stderr.max() < bed.R_stderr.mean()

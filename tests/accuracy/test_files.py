@@ -2,9 +2,10 @@
 
 import pytest
 import xarray as xr
-from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 from tests.entry import main
-from tests.study_modules import ROOT, module_of_study
+from tests.studies.small_runs import task_names
+from tests.studies.small_studies import COVERAGE
+from tests.study_modules import ROOT
 
 from roughgas.base import InputError, sorted_json
 from roughgas.data.netcdf import read_groups
@@ -18,7 +19,7 @@ MODULE = {"modules": ["coverage"]}
 def tasks(tmp_path_factory):
     """The files of a study's tasks, written by the command."""
     folder, text = tmp_path_factory.mktemp("tasks"), settings()
-    names = module_of_study("coverage", "coverage").tasks(SETTINGS)
+    names = task_names("coverage.coverage")
     for name in names:
         command = ["task", FOLDER, name, "--module", "coverage", "--settings", text]
         assert main([*command, "-o", str(folder / f"{name}.nc")]) == 0
@@ -26,7 +27,7 @@ def tasks(tmp_path_factory):
 
 
 def settings(**changes):
-    return sorted_json({"study": SETTINGS | changes, "experiments": EXPERIMENTS})
+    return sorted_json({"study": COVERAGE.settings | changes, "experiments": COVERAGE.experiments})
 
 
 def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):

@@ -4,57 +4,16 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from raw import FreeCooling
-from schedules import COOLING
-from tests.pages import check_study
+from tests.studies.small_runs import combined, task_results
+from tests.studies.small_studies import MODELS
 from tests.study_modules import module_of_study
 
 from roughgas import theory
 from roughgas.tasks.free_cooling import integrate
-from roughgas.tasks.running import Experiments
 
 models, plotting = module_of_study("accuracy", "models"), module_of_study("accuracy", "figure")
-METHODS, error_bar, tasks = models.METHODS, models.error_bar, models.tasks
-
-
-def run(task, settings, experiments, progress=lambda done, total: None):
-    return models.run(task, settings, Experiments(experiments), progress)
-
-
-EXPERIMENT = {
-    "particles": 40,
-    "box": [50, 50],
-    "effects": {"spin": {"inertia": 0.5}, "contact_time": {"duration": 1e-4, "below_r": 0.75}},
-    "schedule": COOLING | {"thermalise": 5},
-}
-SETTINGS = {
-    "seed": 1,
-    "r": "0.8",
-    "beta": "0",
-    "groups": 3,
-    "segment": 20,
-    "event_driven": [10, 20, 40],
-    "dsmc": [10, 40],
-    "rate_equations": [1, 10, 60],
-    "reference": {"jobs": 2, "length": 400},
-    "map": {"r": ["0.9", "0.6"], "beta": ["-0.5", "1"], "particles": 200, "precision": 3e-2},
-    "density": {
-        "points": [["0.8", "-0.3"]],
-        "packings": [0.01, 0.05],
-        "length": 100,
-        "precision": 3e-2,
-    },
-}
-
-
-@pytest.fixture(scope="module")
-def task_results():
-    experiments = {"cooling": EXPERIMENT}
-    return {task: run(task, SETTINGS, experiments) for task in tasks(SETTINGS)}
-
-
-@pytest.fixture(scope="module")
-def data(task_results):
-    return models.combine(task_results, SETTINGS)
+METHODS, error_bar = models.METHODS, models.error_bar
+EXPERIMENT = MODELS.experiments["cooling"]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -84,47 +43,36 @@ def test_error_bars_are_the_scatter_of_rms_errors():
         assert np.median(error_bar(errors, common)) == pytest.approx(observed, rel=0.07)
 
 
-def test_jobs_draw_from_streams_of_their_own(task_results):
-    """No replica of the reference occurs in another job, or in a point that is compared with it."""
-    R = np.concatenate([task_results[f"reference-{k}"].R for k in range(2)])
-    assert len(R) == 20
-    drawn = np.concatenate([R, task_results["event_driven"].R.values.ravel()])
-    assert len(set(drawn)) == len(drawn)
-
-
-def test_every_variable_is_described(data):
-    for name in data.variables:
-        assert data[name].attrs["long_name"] and data[name].attrs["units"], name
-    assert data.attrs["seed"] == 1
-    check_study("models", data)
-    left, right = Figure().subplots(1, 2)
-    plotting.draw_models(left, data)
-    plotting.draw_map(right, data)
-    curve = next(c for c in right.containers if c.get_label() == "$r = 0.6$")
+def test_the_map_shows_the_gaps():
+    data, axes = combined("accuracy.models"), Figure().subplots()
+    plotting.draw_map(axes, data)
+    curve = next(c for c in axes.containers if c.get_label() == "$r = 0.6$")
     assert np.array_equal(curve.lines[0].get_ydata(), 100 * data.map_gap.sel(map_r=0.6))
 
 
-def test_results_follow_from_the_tasks(task_results, data):
-    reference = np.concatenate([task_results[f"reference-{k}"].R for k in range(2)]).mean()
-    assert float(data.R_reference) == pytest.approx(reference)
+def test_results_follow_from_the_tasks():
+    results, data = task_results("accuracy.models"), combined("accuracy.models")
+    reference = np.concatenate([results[f"reference-{k}"].R for k in range(2)]).mean()
+    assert float(data.R_reference) == pytest.approx(reference) and data.reference_replicas == 20
     assert float(data.closed_form_R) == pytest.approx(theory.cooling_ratio(0.8, 0.0))
     # rate equations end at the theory of free cooling
     assert data.rate_equations_R.values[-1] == pytest.approx(float(data.closed_form_R), rel=1e-4)
-    first = task_results["event_driven"].R.values[0] / reference - 1
+    first = results["event_driven"].R.values[0] / reference - 1
     assert data.event_driven_error.values[0] == pytest.approx(np.sqrt(np.mean(first**2)))
     factors = [1 + float(data[name]) for name in ("of_maxwellian", "of_number", "of_dilution")]
     assert np.prod(factors) == pytest.approx(float(data.closed_form_R) / reference)
     assert data.map_gap.sel(map_r=0.6, map_beta=1.0) == pytest.approx(
-        task_results["map-r0.6"].R.values[1] / theory.cooling_ratio(0.6, 1.0) - 1
+        results["map-r0.6"].R.values[1] / theory.cooling_ratio(0.6, 1.0) - 1
     )
-    density = task_results["density-r0.8-beta-0.3"]
+    density = results["density-r0.8-beta-0.3"]
     corrected = density.R.values.mean(axis=1) * float(density.R_many / density.R_few)
     assert data.density_gap.values[0] == pytest.approx(
         corrected / theory.cooling_ratio(0.8, -0.3) - 1
     )
 
 
-def test_everything_has_an_error_bar_and_takes_time(data):
+def test_everything_has_an_error_bar_and_takes_time():
+    data = combined("accuracy.models")
     for method in METHODS:
         for quantity in ("error", "error_stderr", "seconds"):
             values = data[f"{method}_{quantity}"].values

@@ -4,45 +4,17 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import settings
 from matplotlib.figure import Figure
 from raw import typed
-from schedules import COOLING, STEADY
-from tests.pages import check_study
+from tests.studies.small_runs import combined, task_results
+from tests.studies.small_studies import STATISTICAL
 from tests.study_modules import module_of_study
-
-from roughgas.tasks.running import Experiments
 
 statistical = module_of_study("accuracy", "statistical")
 Chain, SCENES, WAYS = statistical.Chain, statistical.SCENES, statistical.WAYS
-noise, observed, tasks = statistical.noise, statistical.observed, statistical.tasks
+noise, observed = statistical.noise, statistical.observed
 time_from_blocks = statistical.time_from_blocks
 draw = module_of_study("accuracy", "figure").draw_statistical
-
-
-def run(task, settings, experiments, progress=lambda done, total: None):
-    return statistical.run(task, settings, Experiments(experiments), progress)
-
-
-SETTINGS = {
-    "seed": 1,
-    "r": "0.9",
-    "beta": "0",
-    "levels": 3,
-    "groups": 4,
-    "chains": 2,
-    "reference": 10,
-    "scenes": {
-        "vibrated": {"equilibrate": 10, "shortest": 5},
-        "sheared": {"equilibrate": 20, "shortest": 40},
-        "cooling": {"equilibrate": 10, "shortest": 8},
-    },
-}
-EXPERIMENTS = {
-    "vibrated": settings("bed", 20, [10, "open"]) | {"schedule": STEADY},
-    "sheared": settings("sheared", 20, [18, 18]) | {"schedule": STEADY | {"period": 0.25}},
-    "cooling": settings("gas", 20, [25, 25]) | {"schedule": COOLING},
-}
 LENGTHS = 2.0 ** np.arange(8)
 
 
@@ -93,23 +65,17 @@ def test_autocorrelation_time_from_blocks():
     assert math.isnan(time_from_blocks(series[:99], 50))
 
 
-@pytest.fixture(scope="module")
-def task_results():
-    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
-
-
-def test_a_study_from_end_to_end(task_results):
-    data = statistical.combine(task_results, SETTINGS)
+def test_a_study_from_end_to_end():
+    data = combined("accuracy.statistical")
     np.testing.assert_array_equal(data.seeds.sel(way="seeds", scene="sheared"), [1, 2, 4])
     np.testing.assert_array_equal(data.length.sel(way="length", scene="sheared"), [40, 80, 160])
-    assert np.all(data.groups >= SETTINGS["groups"])
+    assert np.all(data.groups >= STATISTICAL.settings["groups"])
     assert np.all((data.R > 0) & (data.R < 0.5))
     assert np.all(data.seconds > 0)
     assert np.all(data.seconds.isel(level=-1) > data.seconds.isel(level=0))  # four times the work
     assert np.all(data.cpu_seconds > data.seconds.sum(["way", "level"]))
     share = (data.seconds_needed - data.equilibration_seconds).values
     np.testing.assert_allclose(share[:, 2], 100 * share[:, 0])  # 0.1 % and 1 %
-    check_study("statistical", data)
     axes = Figure().subplots()
     draw(axes, data)
     sheared = data.sel(scene="sheared", way="seeds")
@@ -118,12 +84,13 @@ def test_a_study_from_end_to_end(task_results):
     assert any(np.array_equal(points, expected) for points in shown)
 
 
-def test_estimates_and_references_share_no_run(task_results):
+def test_estimates_and_references_share_no_segment():
+    results = task_results("accuracy.statistical")
     for scene in SCENES:
-        R = np.concatenate([task_results[f"{scene}-{way}"].R.values.ravel() for way in WAYS])
+        R = np.concatenate([results[f"{scene}-{way}"].R.values.ravel() for way in WAYS])
         R = R[np.isfinite(R)]
         assert len(np.unique(R)) == len(R)
-        assert not np.isin(task_results[f"{scene}-reference"].R, R).any()
+        assert not np.isin(results[f"{scene}-reference"].R, R).any()
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -131,7 +98,8 @@ def test_segments_continue_one_another(scene):
     """Two segments equal a single run of their joint length: in a cooling gas up to a new unit of
     velocity."""
     chains = [
-        Chain(typed(EXPERIMENTS[scene]), 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)
+        Chain(typed(STATISTICAL.experiments[scene]), 0.9, 0.0, 8, np.random.default_rng(7))
+        for _ in range(2)
     ]
     halves = np.concatenate([chains[0].measure(8) for _ in range(2)])
     np.testing.assert_array_equal(chains[1].measure(16), halves)

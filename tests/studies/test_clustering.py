@@ -12,42 +12,25 @@ import xarray as xr
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from tests.entry import main
 from tests.show.figures.legibility import faults
+from tests.studies.small_runs import task_run
+from tests.studies.small_studies import CLUSTERING
 from tests.study_modules import ROOT, module_of_study, quietly
 
 from roughgas import theory
 from roughgas.base import sorted_json
-from roughgas.config import load
 from roughgas.data.netcdf import read_groups
 from roughgas.tasks.running import Experiments
 
 FOLDER = ROOT / "studies" / "clustering"
-SETTINGS = {"r": "0.9", "beta": "0.2", "seed": 3, "thermalise": 5, "collisions": 60, "frames": 12}
-SETTINGS |= {"cell": 5, "window": 30}
+SETTINGS, GAS = CLUSTERING.settings, CLUSTERING.experiments["gas"]
 tasks, results, figure, movie = (
     module_of_study("clustering", name) for name in ("tasks", "results", "figure", "movie")
 )
 
 
 @pytest.fixture(scope="module")
-def gas():
-    experiment = load(ROOT / "config.yaml").experiment("clustering.gas", "small").raw
-    effects = {"spin": {"inertia": 0.5}}
-    return experiment | {"particles": 100, "box": [40.0, 50.0], "effects": effects}
-
-
-def filmed(gas, path, every=5, **changes):
-    """Return the film of a run with checkpoints at `path`."""
-    tasks.CHECKPOINT_INTERVAL = every
-    settings = SETTINGS | changes
-    return tasks.run("film", settings, Experiments({"gas": gas}), quietly, (path, f"{settings}"))
-
-
-@pytest.fixture(scope="module")
-def undisturbed(gas, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("undisturbed")
-    film = filmed(gas, folder / "c.npz", every=10**6)
-    assert list(folder.iterdir()) == []
-    return film
+def undisturbed():
+    return task_run("clustering", "film").result
 
 
 def test_the_frames_are_evenly_spaced_in_collisions(undisturbed):
@@ -67,7 +50,7 @@ def test_every_particle_is_on_the_map(undisturbed):
     assert count.sum() == count[1, 7] + count[9, 0] == 2
 
 
-def test_disks_are_in_the_window_and_do_not_overlap(undisturbed, gas, tmp_path):
+def test_disks_are_in_the_window_and_do_not_overlap(undisturbed):
     assert undisturbed.disks.values.sum() == undisturbed.sizes["disk"]
     for frame in range(13):
         x, y, _ = (column.astype(float) for column in figure._disks_in_window(undisturbed, frame))
@@ -75,16 +58,22 @@ def test_disks_are_in_the_window_and_do_not_overlap(undisturbed, gas, tmp_path):
         assert np.all(abs(x - 20) < 16) and np.all(abs(y - 25) < 16)
         distance = np.hypot(x[:, None] - x, y[:, None] - y) + 9.0 * np.eye(len(x))
         assert distance.min() > 2.0 - 1e-5
-    film = filmed(gas, tmp_path / "c.npz", window=60, frames=2, collisions=4)
-    assert list(film.disks.values) == [100, 100, 100]
+
+
+def test_a_window_wider_than_the_box_has_all_disks(tmp_path):
+    """A film of fewer frames than CHECKPOINT_INTERVAL writes no checkpoint."""
+    settings = SETTINGS | {"window": 60, "frames": 2, "collisions": 4}
+    checkpoint = tmp_path / "c.npz", "film"
+    film = tasks.run("film", settings, Experiments({"gas": GAS}), quietly, checkpoint)
+    assert list(film.disks.values) == [100, 100, 100] and list(tmp_path.iterdir()) == []
     spins = film.disk_spin.values.reshape(3, 100)
     assert np.mean(spins[1:] ** 2, axis=1) == pytest.approx(1.0)
 
 
 @pytest.mark.slow
-def test_a_killed_step_goes_on_from_its_checkpoint_with_the_same_bits(gas, tmp_path, capsys):
+def test_a_killed_step_goes_on_from_its_checkpoint_with_the_same_bits(tmp_path, capsys):
     settings = SETTINGS | {"frames": 1000, "collisions": 100}
-    settings = sorted_json({"study": settings, "experiments": {"gas": gas}})
+    settings = sorted_json({"study": settings, "experiments": {"gas": GAS}})
     uninterrupted, killed = tmp_path / "whole.nc", tmp_path / "killed.nc"
     saved = tmp_path / "killed.nc.checkpoint.npz"
     step = ["task", str(FOLDER), "film", "--settings", settings, "-o"]

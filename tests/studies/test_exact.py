@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests.show.figures.legibility import faults
-from tests.study_modules import check_variables, module_of_study, quietly
+from tests.studies.small_runs import task_run
+from tests.studies.small_studies import SMALL_STUDIES
+from tests.study_modules import module_of_study
 
 from roughgas import theory
-from roughgas.base.reading import read_yaml
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED
 from roughgas.results.comparison import TIERS
 from roughgas.results.row_verdicts import DIFFERS, verdicts
@@ -23,15 +24,8 @@ evidence, judges, contacts = (
 )
 homogeneous = module_of_study("exact", "homogeneous")
 events, draw = module_of_study("exact", "events"), module_of_study("exact", "figure").draw
-SETTINGS = read_yaml("studies/exact/config.yaml")["scales"]["small"]["tasks"]
-MATERIAL = {"restitution": 0.9, "roughness": 0.2, "mu": 0.3}
-SETTINGS |= {"seed": 5, "contacts": MATERIAL | {"dimensions": [2, 3], "contacts": 40}}
-SETTINGS["tracers"] |= {"particles": 100, "tracers": 1, "packing": 0.01, "thermalise": 20}
-SETTINGS["noise"]["packing"] = SETTINGS["rates"]["packing"] = 0.01
-SETTINGS["mixtures"]["packing"], SETTINGS["rough"]["settle"] = 0.01, 100
-SETTINGS["clusters"] |= {"packing": 0.2, "gases": [[0.8, 0]]}
-SETTINGS["fluids"]["every"] = 10
-SETTINGS["diffusion"]["dimensions"] = [2, 3]
+SETTINGS = SMALL_STUDIES["exact"].settings
+MATERIAL = SETTINGS["contacts"]
 DIFFUSION_RATIO = {2: 1.02709, 3: 1.01895}
 """Self-diffusion of smooth particles with all polynomials, over its first approximation."""
 both = pytest.mark.parametrize("dimension", [2, 3])
@@ -201,7 +195,6 @@ def measured(**shifts):
 
 def test_every_quantity_has_its_rows():
     data = measured()
-    check_variables("exact", data)
     rows = evidence.rows(data)
     comparisons = [(row.quantity, row.tier, row.source) for row in rows]
     changes = sum(a != b for a, b in pairwise(comparisons))
@@ -244,7 +237,7 @@ WITHIN |= {"R": 0.01, "a20": 0.02, "a11": 0.04, "a02": 0.1}
 def test_gases_without_positions(kind):
     for task in runs.tasks(SETTINGS):
         if task.startswith(kind):
-            result = runs.run(task, SETTINGS, {}, quietly)
+            result = task_run("exact", task).result
             for name, value in exact_numbers(task).items():
                 assert float(result[name].mean()) == pytest.approx(value, abs=WITHIN[name])
 
@@ -255,7 +248,7 @@ def test_tails_without_positions():
     0.3."""
     for dimension, r, driven in SETTINGS["tails"]["gases"]:
         task = runs.name_of("tails", dimension, r, driven)
-        averages = runs.run(task, SETTINGS, {}, quietly).mean()
+        averages = task_run("exact", task).result.mean()
         expected = published.tail(dimension, r, float(averages.a2), driven)
         assert float(averages["tail"]) == pytest.approx(expected, abs=0.4)
 
@@ -263,7 +256,7 @@ def test_tails_without_positions():
 @pytest.mark.slow  # compiles a kernel
 def test_clusters_cool_by_other_laws():
     """Haff's law would have the exponents 2 and 2, with a constant ratio of energies."""
-    averages = runs.run("clusters_0.8_0", SETTINGS, {}, quietly).mean()
+    averages = task_run("exact", "clusters_0.8_0").result.mean()
     assert averages.translation < 1.8 and averages.rotation > averages.translation + 0.2
 
 
@@ -273,7 +266,7 @@ def test_gases_by_events(kind):
     """Each within 6 standard errors, of three runs, or 3 %."""
     for task in runs.tasks(SETTINGS):
         if task.startswith(kind):
-            result = runs.run(task, SETTINGS, {}, quietly)
+            result = task_run("exact", task).result
             for name, value in exact_numbers(task).items():
                 average = results.average(result[name])
                 tolerance = max(6 * average.stderr, 0.03)
@@ -283,6 +276,6 @@ def test_gases_by_events(kind):
 @pytest.mark.slow
 @both
 def test_single_contacts(dimension):
-    result = runs.run(f"contacts_{dimension}", SETTINGS, {}, quietly)
+    result = task_run("exact", f"contacts_{dimension}").result
     for name, value in exact_numbers(f"contacts_{dimension}").items():
         assert result[name].values == pytest.approx(value, rel=1e-9)

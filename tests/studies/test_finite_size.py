@@ -2,43 +2,16 @@
 
 import numpy as np
 import pytest
-from brute_force import KERNELS
-from matplotlib.figure import Figure
 from raw import FreeCooling, build, start_gas
-from tests.configurations import EXPERIMENTS as WHOLE
-from tests.show.figures.legibility import faults
-from tests.study_modules import check_variables, module_of_study, quietly
+from tests.studies.small_runs import combined, task_run
+from tests.studies.small_studies import FINITE_SIZE
+from tests.study_modules import module_of_study
 
-from roughgas import config, theory
-from roughgas.tasks.running import Experiments
+from roughgas import theory
 
-runs, results = module_of_study("finite_size", "tasks"), module_of_study("finite_size", "results")
+runs = module_of_study("finite_size", "tasks")
 draw = module_of_study("finite_size", "figure").draw
-CONFIG = config.load(WHOLE)
-EXPERIMENTS = {
-    name: CONFIG.experiment(name, "paper").raw for name in ("cooling", "cooling_spheres")
-}
-EXPERIMENTS["cooling_spheres"]["effects"] = KERNELS["spheres"]["effects"]  # others compile that
-SETTINGS = {
-    "seed": 1,
-    "particles": [20, 40],
-    "packings": [0.05, 0.001],
-    "precision": 0.2,
-    "points": {"cooling": [["0.9", "0"], ["0.8", "-0.3"]], "cooling_spheres": [["0.8", "0"]]},
-}
-
-
-@pytest.fixture(scope="module")
-def task_results():
-    return {
-        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
-        for task in runs.tasks(SETTINGS)
-    }
-
-
-@pytest.fixture(scope="module")
-def data(task_results):
-    return results.combine(task_results, SETTINGS)
+EXPERIMENTS = FINITE_SIZE.experiments
 
 
 def gas_of(sides, dimension):
@@ -69,16 +42,10 @@ def test_shear_waves_are_measured(dimension):
     assert runs.cumulant_and_flow(gas)[1] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_runs_are_all_different(task_results):
-    R = np.concatenate([result.R.values.ravel() for result in task_results.values()])
-    assert len(set(R)) == len(R)
-
-
-def test_results_follow_from_the_tasks(task_results, data):
-    gas, result = (
-        data.isel(point=1).sel(particles=40, packing=0.001),
-        task_results["cooling_r0.8_beta-0.3-n40"],
-    )
+def test_results_follow_from_the_tasks():
+    data, task = combined("finite_size"), "cooling_r0.8_beta-0.3-n40"
+    result = task_run("finite_size", task).result
+    gas = data.isel(point=1).sel(particles=40, packing=0.001)
     late = result.R.values[1, :, 8:]
     assert gas.theory == pytest.approx(theory.cooling_ratio(0.8, -0.3))
     assert gas.R == pytest.approx(late.mean()) and gas.replicas == len(late)
@@ -94,16 +61,10 @@ def test_results_follow_from_the_tasks(task_results, data):
 
 
 @pytest.mark.slow
-def test_it_is_documented_tabulated_and_drawn(data):
-    check_variables("finite_size", data)
-    table = results.table(data)
-    assert table.count("\n| cooling, r = 0.8, β = −0.3 |") == 6
-    assert table.count("\n## ") + table.startswith("## ") == 1
-    figure = draw(data)
-    assert isinstance(figure, Figure) and len(figure.axes) == 4
-    number, _, box, _ = figure.axes
+def test_the_figure_names_every_point():
+    data = combined("finite_size")
+    number, _, box, _ = draw(data).axes
     assert len(number.get_yticklabels()) == data.sizes["point"] and box.get_yscale() == "linear"
-    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
 
 
 def test_a_run_is_unknown_after_its_collapse():

@@ -6,8 +6,9 @@ from brute_force import scene_of, settings, snapshot
 from brute_force.comparison import brute_force_from
 from raw import initial_state
 from schedules import STEADY
-from tests.show.figures.legibility import faults
-from tests.study_modules import check_variables, module_of_study, quietly
+from tests.studies.small_runs import combined, task_results
+from tests.studies.small_studies import BED, PROFILES
+from tests.study_modules import module_of_study, quietly
 
 from roughgas.simulation.gas import Gas
 from roughgas.tasks.running import Experiments
@@ -15,20 +16,7 @@ from roughgas.tasks.running import Experiments
 runs, results = module_of_study("profiles", "tasks"), module_of_study("profiles", "results")
 draw = module_of_study("profiles", "figure").draw
 CONTACTS, SUMS = runs.CONTACTS, runs.SUMS
-EXPERIMENTS = {
-    "bed": settings("bed", 16, [10, "open"]) | {"schedule": STEADY},
-    "gas": settings("sheared", 16, [12, 12]) | {"schedule": STEADY},
-}
-BED = {"experiment": "bed", "r": "0.9", "beta": "0.3", "slice": 1.5, "period": 1}
-GAS = {"experiment": "gas", "r": "0.8", "beta": "1", "slice": 3, "period": 10}
-LENGTHS = {"equilibrate": 20, "measure": 30}
-SETTINGS = {
-    "seed": 1,
-    "runs": 2,
-    "phases": 8,
-    "slices": 10,
-    "points": [BED | LENGTHS, GAS | LENGTHS],
-}
+SETTINGS, EXPERIMENTS = PROFILES.settings, PROFILES.experiments
 
 
 def gas_of(experiment, r=0.9, beta=0.3):
@@ -108,24 +96,15 @@ def test_an_elastic_gas_at_rest_is_barometric():
         assert np.all(difference < 4 * data[f"{name}_stderr"][filled])
 
 
-@pytest.fixture(scope="module")
-def task_results():
-    return {
-        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
-        for task in runs.tasks(SETTINGS)
-    }
-
-
-def test_slices_have_the_energy_of_the_gas_and_every_collision(task_results):
-    for run in task_results.values():
+def test_slices_have_the_energy_of_the_gas_and_every_collision():
+    for run in task_results("profiles").values():
         assert results.imbalance(run) < 1e-12
         assert np.all(run.particles.sum("slice") == 16 * run.samples)
         assert set(CONTACTS) <= set(run) and run.contacts.sum() == run.collisions > 10
 
 
-def test_every_point_has_its_profiles(task_results):
-    data = results.combine(task_results, SETTINGS)
-    check_variables("profiles", data)
+def test_every_point_has_its_profiles():
+    data = combined("profiles")
     assert list(data.point.values) == ["bed_r0.9_beta0.3", "gas_r0.8_beta1"]
     assert list(np.isfinite(data.theta.values)) == [False, True]
     bed = data.isel(point=0)
@@ -137,11 +116,6 @@ def test_every_point_has_its_profiles(task_results):
     assert float(bed.R_quarters) == pytest.approx(float(bed.R_phase[::2].mean()))
 
 
-def test_figure_and_table_show_every_point(task_results):
-    data = results.combine(task_results, SETTINGS)
-    figure = draw(data)
-    _, _, averages, sheared = figure.axes
-    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
+def test_the_figure_shows_every_point():
+    _, _, averages, sheared = draw(combined("profiles")).axes
     assert len(averages.containers) == len(sheared.containers) == 1
-    assert "disks, r = 0.9, β = 0.3" in results.table(data)
-    assert "disks, r = 0.8, β = 1 |" in results.table(data)

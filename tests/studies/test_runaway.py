@@ -4,45 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from raw import FreeCooling
-from tests.show.figures.legibility import faults
-from tests.study_modules import check_variables, module_of_study, quietly
+from tests.studies.small_runs import combined, task_run
+from tests.studies.small_studies import RUNAWAY
+from tests.study_modules import module_of_study
 
-from roughgas import config, theory
+from roughgas import theory
 from roughgas.tasks import seed_sequence
-from roughgas.tasks.running import Experiments
 
 runs, results = module_of_study("runaway", "tasks"), module_of_study("runaway", "results")
-draw = module_of_study("runaway", "figure").draw
-EXPERIMENTS = {"cooling": config.load("config.yaml").experiment("cooling", "paper").raw}
-COOLING = FreeCooling(EXPERIMENTS["cooling"], 0.9, 0.0)
-SETTINGS = {
-    "seed": 3,
-    "r": "0.9",
-    "beta": "0",
-    "mu": [0.05, 0.1, 0.5],
-    "packing": 0.001,
-    "dsmc": [
-        {"particles": 40, "runs": 5, "limit": 600},
-        {"particles": 400, "runs": 4, "limit": 400},
-    ],
-    "events": [{"particles": 40, "runs": 3, "limit": 100}],
-    "example": {"particles": 400, "mu": [0.1], "limit": 40},
-}
-
-
-@pytest.fixture(scope="module")
-def task_results():
-    return {
-        task: runs.run(task, SETTINGS, Experiments(EXPERIMENTS), quietly)
-        for task in runs.tasks(SETTINGS)
-    }
-
-
-@pytest.fixture(scope="module")
-def data(task_results):
-    return results.combine(task_results, SETTINGS)
+COOLING = FreeCooling(RUNAWAY.experiments["cooling"], 0.9, 0.0)
 
 
 def test_participation():
@@ -87,8 +58,8 @@ def test_times_of_escape_are_unbiased_with_unfinished_runs():
 
 
 @pytest.mark.slow
-def test_combined_results_follow_from_the_tasks(data, task_results):
-    run = task_results["dsmc-n400-mu0.1"]
+def test_combined_results_follow_from_the_tasks():
+    data, run = combined("runaway"), task_run("runaway", "dsmc-n400-mu0.1").result
     gas = data.sel(mu=0.1, dsmc_particles=400)
     assert gas.dsmc_escapes == np.isfinite(run.time).sum() == gas.dsmc_runs == 4
     assert gas.dsmc_time == pytest.approx(run.time.mean().item())
@@ -109,14 +80,10 @@ def test_combined_results_follow_from_the_tasks(data, task_results):
 
 
 @pytest.mark.slow
-def test_it_is_documented_tabulated_and_drawn(data):
-    check_variables("runaway", data)
-    table = results.table(data)
+def test_the_table_has_the_material_and_the_runs_that_escaped():
+    table = results.table(combined("runaway"))
     assert table.startswith("## Runaway spins (r = 0.9, β = 0.0, packing 0.001)")
-    assert table.count("\n| 0.1 |") == 3 and "(0/5)" in table
-    figure = draw(data)
-    assert isinstance(figure, Figure) and len(figure.axes) == 4
-    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
+    assert "(0/5)" in table
 
 
 @pytest.mark.slow
@@ -125,8 +92,8 @@ def test_events_and_dsmc_agree_where_the_gas_is_dilute(particles, mu):
     """The time of escape of 24 gases each: within 4 standard errors."""
     times = []
     for start, key in ((runs.without_positions, 0), (runs.by_events, 1)):
-        seeds = seed_sequence(SETTINGS, 100 + key, particles).spawn(24)
-        steps = (start(COOLING, SETTINGS, mu, particles, seed) for seed in seeds)
+        seeds = seed_sequence(RUNAWAY.settings, 100 + key, particles).spawn(24)
+        steps = (start(COOLING, RUNAWAY.settings, mu, particles, seed) for seed in seeds)
         time = np.array([runs.run_until_escape(step, 20000)[0] for step in steps])
         times.append(results.time_of_escape(time, time)[0])
     first, second = times

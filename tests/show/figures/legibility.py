@@ -28,15 +28,30 @@ def faults(draw: Callable[[], Figure]) -> list[str]:
     """Draw a figure in the style of all figures, and return a line for each illegible element."""
     with rc_context(PARAMETERS):
         figure = draw()
-        figure.draw_without_rendering()
-        texts = list(_visible_texts(figure))
+        texts = _drawn_texts(figure)
         return [
-            *_small_texts(figure, texts),
-            *_cropped_texts(figure, texts),
+            *_faults_of_letters(figure, texts),
             *_overlapping_texts(figure, texts),
             *(fault for axes in figure.axes for fault in _texts_on_data(figure, axes, texts)),
             *(fault for axes in figure.axes for fault in _hidden_symbols(figure, axes)),
         ]
+
+
+def faults_of_letters(draw: Callable[[], Figure]) -> list[str]:
+    """Return the `faults` of a figure that do not depend on where its data lie."""
+    with rc_context(PARAMETERS):
+        figure = draw()
+        return _faults_of_letters(figure, _drawn_texts(figure))
+
+
+def _faults_of_letters(figure, texts) -> list[str]:
+    return [*_small_texts(figure, texts), *_cropped_texts(figure, texts)]
+
+
+def _drawn_texts(figure: Figure) -> list[Text]:
+    """Draw a figure, and return all its visible texts at their final positions."""
+    figure.draw_without_rendering()
+    return list(_visible_texts(figure))
 
 
 def _visible_texts(figure: Figure) -> Iterator[Text]:
