@@ -7,6 +7,7 @@ import logging
 import os.path
 import re
 import shutil
+from functools import cache
 from pathlib import Path
 
 from docutils.nodes import SkipNode
@@ -140,9 +141,15 @@ def mend_links(app, docname, source):
         source[0] = f"{linked(README.read_text(encoding='utf-8'), ROOT, DOCS)}\n{source[0]}"
 
 
+@cache
+def numbers():
+    """The numbers of all pages, by mark."""
+    return numbers_of_pages(ROOT)
+
+
 def fill_numbers(app, docname, source):
     """Fill the numbers and rows of the last results into a page."""
-    source[0] = filled(source[0], numbers_of_pages(ROOT))
+    source[0] = filled(source[0], numbers())
     if docname == "evidence":
         rows = read_rows(ROOT / "figures" / "evidence.csv")
         source[0] = source[0].replace(EVIDENCE, as_markdown(rows))

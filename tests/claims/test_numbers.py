@@ -12,7 +12,6 @@ from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers, quoted
 from roughgas.claims.pages import numbers_of_pages
 from roughgas.claims.verdicts import beside_theory
 
-QUOTED = numbers_of_pages(pages.ROOT)
 STUDIES_THAT_QUOTE = sorted(path.parent.name for path in pages.STUDIES.glob("*/quoted.py"))
 AT_POINTS = (-0.95, -0.8, 0.0, 0.5)
 
@@ -45,6 +44,12 @@ def quoted_numbers():
     return quoted_of(gas("sheared", 0.02))
 
 
+@pytest.fixture(scope="module")
+def last():
+    """The numbers of all pages, from the last results."""
+    return numbers_of_pages(pages.ROOT)
+
+
 def test_a_point_that_a_small_scale_lacks_is_a_dash(quoted_numbers):
     fewer = quoted_of(gas("sheared", 0.02, beta=AT_POINTS[1:]))
     missing = {name for name, text in fewer.items() if text == "–" != quoted_numbers[name]}
@@ -73,16 +78,15 @@ def test_statements_of_the_paper_are_counted_without_ours(quoted_numbers):
 
 
 @pytest.mark.parametrize("page", pages.QUOTING, ids=lambda page: "-".join(page.parts[-2:]))
-def test_pages_quote_the_last_results(page):
-    assert page.read_text(encoding="utf-8") == pages.with_numbers(page, QUOTED), (
-        "python -m tests.pages"
-    )
+def test_pages_quote_the_last_results(page, last):
+    written = page.read_text(encoding="utf-8")
+    assert written == pages.with_numbers(page, last), "python -m tests.pages"
 
 
 @pytest.mark.parametrize("study", STUDIES_THAT_QUOTE)
-def test_a_readme_quotes_all_numbers_of_its_study(study):
+def test_a_readme_quotes_all_numbers_of_its_study(study, last):
     page = (pages.STUDIES / study / "README.md").read_text(encoding="utf-8")
-    assert quoted(page) == {name for name in QUOTED if name.partition(".")[0] == study}
+    assert quoted(page) == {name for name in last if name.partition(".")[0] == study}
 
 
 def test_readme_counts_the_statements_as_the_verdicts_do():
