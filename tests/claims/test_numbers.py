@@ -1,6 +1,7 @@
 """Numbers quoted in pages: from made-up data with known answers, and in these pages."""
 
 import json
+import math
 
 import pytest
 from tests import pages
@@ -9,8 +10,9 @@ from tests.study_modules import subject
 from tests.synthetic import reduced
 
 from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers, quoted
-from roughgas.claims.pages import numbers_of_pages
+from roughgas.claims.pages import in_words, mean_of, numbers_of_pages, rounded, with_error
 from roughgas.claims.verdicts import beside_theory
+from roughgas.statistics.errors import Estimate
 
 STUDIES_THAT_QUOTE = sorted(path.parent.name for path in pages.STUDIES.glob("*/quoted.py"))
 AT_POINTS = (-0.95, -0.8, 0.0, 0.5)
@@ -87,6 +89,14 @@ def test_pages_quote_the_last_results(page, last):
 def test_a_readme_quotes_all_numbers_of_its_study(study, last):
     page = (pages.STUDIES / study / "README.md").read_text(encoding="utf-8")
     assert quoted(page) == {name for name in last if name.partition(".")[0] == study}
+
+
+def test_texts_of_numbers_have_a_minus_sign_and_their_errors():
+    assert with_error(Estimate(-0.0227, 0.0045), 100.0) == "−2.27(45)"
+    assert rounded(-0.126, 2) == "−0.13"
+    assert [in_words(count) for count in (0, 2, 20, 21)] == ["none", "two", "twenty", "21"]
+    mean = mean_of([Estimate(1.0, 0.3, 5.0), Estimate(3.0, 0.4, math.inf)])
+    assert mean == pytest.approx((2.0, 0.25, 5.0 * (0.25 / 0.09) ** 2))
 
 
 def test_readme_counts_the_statements_as_the_verdicts_do():
