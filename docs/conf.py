@@ -3,11 +3,11 @@
 It can be read without a network: nothing in it is loaded from elsewhere.
 """
 
-import json
 import logging
 import os.path
 import re
 import shutil
+from functools import cache
 from pathlib import Path
 
 from docutils.nodes import SkipNode
@@ -18,9 +18,9 @@ from sphinx.errors import SphinxError
 import roughgas
 from roughgas import steps
 from roughgas.claims.numbers import filled
+from roughgas.claims.pages import numbers_of_pages
 from roughgas.results.comparison import read_rows
 from roughgas.results.evidence_page import as_markdown
-from roughgas.results.row_counts import row_counts
 
 DOCS = Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -141,12 +141,17 @@ def mend_links(app, docname, source):
         source[0] = f"{linked(README.read_text(encoding='utf-8'), ROOT, DOCS)}\n{source[0]}"
 
 
+@cache
+def numbers():
+    """The numbers of all pages, by mark."""
+    return numbers_of_pages(ROOT)
+
+
 def fill_numbers(app, docname, source):
     """Fill the numbers and rows of the last results into a page."""
-    numbers = json.loads((ROOT / "figures" / "numbers.json").read_text(encoding="utf-8"))
-    rows = read_rows(ROOT / "figures" / "evidence.csv")
-    source[0] = filled(source[0], numbers | row_counts(rows))
+    source[0] = filled(source[0], numbers())
     if docname == "evidence":
+        rows = read_rows(ROOT / "figures" / "evidence.csv")
         source[0] = source[0].replace(EVIDENCE, as_markdown(rows))
 
 

@@ -1,12 +1,12 @@
-"""The tables of the documentation that are made from the code: `python -m tests.pages` writes them.
+"""The tables and numbers of pages that are made from code and from committed results.
 
-Each stands in its page between two marks. What `docs/command_line.md` shows is run by
+`python -m tests.pages` writes them. A table stands in its page between two marks, a number in a
+sentence has its mark after it. What `docs/command_line.md` shows is run by
 tests/cli/page.py.
 """
 
 import ast
 import inspect
-import json
 import math
 from itertools import pairwise
 from operator import attrgetter
@@ -18,6 +18,7 @@ from roughgas.base.fields import fields_of
 from roughgas.base.files import study_module
 from roughgas.claims import read_study, verdicts
 from roughgas.claims.numbers import filled
+from roughgas.claims.pages import numbers_of_pages, tables_of_studies
 from roughgas.config import json_schema
 from roughgas.config.json_schema import DESCRIBERS, legal_values
 from roughgas.data.reduced import REDUCED
@@ -25,16 +26,17 @@ from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import COOLING, GRID_PLACEHOLDER, POINT, SPIN
 from roughgas.effects.species import PairSettings, RadiiSettings, SpeciesSettings
 from roughgas.results import row_verdicts
-from roughgas.results.comparison import read_rows
-from roughgas.results.row_counts import row_counts
 from roughgas.statistics import estimates
 from roughgas.tasks import read_variables
 
-STUDIES = Path(__file__).parents[1] / "studies"
+ROOT = Path(__file__).parents[1]
+STUDIES = ROOT / "studies"
 PAPER = read_study(STUDIES / "paper", "The paper", ())
 JUDGES = study_module(STUDIES / "paper", "judges")
-DOCS = Path(__file__).parents[1] / "docs"
-RESULTS, EVIDENCE = DOCS / "results.md", DOCS / "evidence.md"
+DOCS = ROOT / "docs"
+READMES = sorted(STUDIES.glob("*/README.md"))
+QUOTING = (DOCS / "results.md", DOCS / "evidence.md", *READMES)
+"""Pages whose numbers have marks."""
 EDITORS = Path(json_schema.__file__).with_name("config.schema.json")
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
 WRITTEN = "only roughgas writes it"  # the schema's description of keys that no configuration has
@@ -74,38 +76,42 @@ def tables():
     by_page_and_name["data", "point"] = _variables("type units when", POINT, _units)
     by_page_and_name["data", "reduced"] = _variables("units how", REDUCED, _units)
     by_page_and_name["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
-    folder = DOCS.parent / "studies"
     study_variables = {
-        name: read_variables(folder / "accuracy" / "variables.yaml", name)
+        name: read_variables(STUDIES / "accuracy" / "variables.yaml", name)
         for name in ("statistical", "models", "discretisation")
     }
-    study_variables["coverage"] = read_variables(folder / "coverage" / "variables.yaml")
+    study_variables["coverage"] = read_variables(STUDIES / "coverage" / "variables.yaml")
+    for (study, name), table in tables_of_studies(ROOT).items():
+        by_page_and_name[f"studies/{study}", name] = table
     return by_page_and_name | {
         ("data", name): _variables("units", described)
         for name, described in study_variables.items()
     }
 
 
+def path_of(page):
+    """The file of a page: of a study, or of the documentation."""
+    return ROOT / page / "README.md" if page.startswith("studies/") else DOCS / f"{page}.md"
+
+
 def written(page, name):
-    text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
+    text = path_of(page).read_text(encoding="utf-8")
     return text.split(BEGIN.format(name))[1].split(END)[0]
 
 
 def write():
     for (page, name), table in tables().items():
-        path, begin = DOCS / f"{page}.md", BEGIN.format(name)
+        path, begin = path_of(page), BEGIN.format(name)
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace(begin + written(page, name) + END, begin + table + END))
-    for page in (RESULTS, EVIDENCE):
-        page.write_text(with_numbers(page), encoding="utf-8")
+    numbers = numbers_of_pages(ROOT)
+    for page in QUOTING:
+        page.write_text(with_numbers(page, numbers), encoding="utf-8")
     EDITORS.write_text(json_schema.text(), encoding="utf-8")
 
 
-def with_numbers(page):
-    """Return the text of a page with the numbers of the last results before its marks."""
-    figures = DOCS.parent / "figures"
-    numbers = json.loads((figures / "numbers.json").read_text(encoding="utf-8"))
-    numbers |= row_counts(read_rows(figures / "evidence.csv"))
+def with_numbers(page, numbers):
+    """Return the text of a page with these numbers, by mark, before its marks."""
     return filled(page.read_text(encoding="utf-8"), numbers, marks=True)
 
 

@@ -39,8 +39,8 @@ def published(
     return values, errors
 
 
-def published_R(r: float, beta: float, spin_share: float) -> Estimate:
-    """Return R of a state by DSMC, with its error.
+def published_R(r: float, beta: float, spin_share: float, method: str = "DSMC") -> Estimate:
+    """Return R of a state by `method`, DSMC or EDMD, with its error.
 
     Raises KeyError for a state that is not published.
     """
@@ -49,7 +49,7 @@ def published_R(r: float, beta: float, spin_share: float) -> Estimate:
         {"r": [r], "beta": [beta], "spin_share": [spin_share]},
         ("r", "beta", "spin_share"),
     )
-    value, error = (float(array.squeeze()) for array in published("DSMC", grid))
+    value, error = (float(array.squeeze()) for array in published(method, grid))
     if np.isnan(value):
         raise KeyError((r, beta, spin_share))
     return Estimate(value, error)

@@ -80,10 +80,15 @@ def time_of(crossing: Crossing) -> Estimate:
 def are_curves_published(*gases: xr.Dataset) -> Finding:
     """The means over the quarters of each curve are the published ones."""
     curves = [(two, sample) for two in pairs(gases) for sample in two.published]
-    limit = 2.0 * NormalDist().cdf(-SIGNIFICANT) / len(curves)
+    limit = curve_limit(len(curves))
     return combined_finding(
         (_curve_name(two, sample), _curve_finding(two, sample, limit)) for two, sample in curves
     )
+
+
+def curve_limit(count: int) -> float:
+    """Return the probability below which one of `count` curves differs from the published one."""
+    return 2.0 * NormalDist().cdf(-SIGNIFICANT) / count
 
 
 def _curve_name(two, sample):

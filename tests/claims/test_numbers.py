@@ -1,6 +1,7 @@
-"""Numbers quoted in pages: from made-up data with known answers, and in the page of results."""
+"""Numbers quoted in pages: from made-up data with known answers, and in these pages."""
 
 import json
+import math
 
 import pytest
 from tests import pages
@@ -8,9 +9,12 @@ from tests.claims.gases import constant, walls
 from tests.study_modules import subject
 from tests.synthetic import reduced
 
-from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers
+from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers, quoted
+from roughgas.claims.pages import in_words, mean_of, numbers_of_pages, rounded, with_error
 from roughgas.claims.verdicts import beside_theory
+from roughgas.statistics.errors import Estimate
 
+STUDIES_THAT_QUOTE = sorted(path.parent.name for path in pages.STUDIES.glob("*/quoted.py"))
 AT_POINTS = (-0.95, -0.8, 0.0, 0.5)
 
 
@@ -42,6 +46,12 @@ def quoted_numbers():
     return quoted_of(gas("sheared", 0.02))
 
 
+@pytest.fixture(scope="module")
+def last():
+    """The numbers of all pages, from the last results."""
+    return numbers_of_pages(pages.ROOT)
+
+
 def test_a_point_that_a_small_scale_lacks_is_a_dash(quoted_numbers):
     fewer = quoted_of(gas("sheared", 0.02, beta=AT_POINTS[1:]))
     missing = {name for name, text in fewer.items() if text == "–" != quoted_numbers[name]}
@@ -69,32 +79,47 @@ def test_statements_of_the_paper_are_counted_without_ours(quoted_numbers):
     assert ours == ["one", "one", "none", "none"]
 
 
-def test_the_page_of_results_quotes_the_last_results():
-    for page in (pages.RESULTS, pages.EVIDENCE):
-        assert page.read_text(encoding="utf-8") == pages.with_numbers(page), "python -m tests.pages"
+@pytest.mark.parametrize("page", pages.QUOTING, ids=lambda page: "-".join(page.parts[-2:]))
+def test_pages_quote_the_last_results(page, last):
+    written = page.read_text(encoding="utf-8")
+    assert written == pages.with_numbers(page, last), "python -m tests.pages"
+
+
+@pytest.mark.parametrize("study", STUDIES_THAT_QUOTE)
+def test_a_readme_quotes_all_numbers_of_its_study(study, last):
+    page = (pages.STUDIES / study / "README.md").read_text(encoding="utf-8")
+    assert quoted(page) == {name for name in last if name.partition(".")[0] == study}
+
+
+def test_texts_of_numbers_have_a_minus_sign_and_their_errors():
+    assert with_error(Estimate(-0.0227, 0.0045), 100.0) == "−2.27(45)"
+    assert rounded(-0.126, 2) == "−0.13"
+    assert [in_words(count) for count in (0, 2, 20, 21)] == ["none", "two", "twenty", "21"]
+    mean = mean_of([Estimate(1.0, 0.3, 5.0), Estimate(3.0, 0.4, math.inf)])
+    assert mean == pytest.approx((2.0, 0.25, 5.0 * (0.25 / 0.09) ** 2))
 
 
 def test_readme_counts_the_statements_as_the_verdicts_do():
     """The last verdicts are of all statements of the paper, and of ours."""
-    quoted = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
+    committed = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
     words = IN_WORDS.split()
     statements = subject("paper").statements
     ours = sum(statement.ours for statement in statements)
-    assert quoted["claims.all"] == words[len(statements) - ours]
-    assert quoted["claims.ours.all"] == words[ours]
-    counts = [quoted[f"claims.{name}"] for name in ("all", "holds", "qualified", "fails")]
+    assert committed["claims.all"] == words[len(statements) - ours]
+    assert committed["claims.ours.all"] == words[ours]
+    counts = [committed[f"claims.{name}"] for name in ("all", "holds", "qualified", "fails")]
     sentence = (
         "Of {} statements of the paper that are judged, {} hold, {} hold with a qualification, "
     )
     sentence += "{} fails; {} of ours, on averages, hold:"
     readme = " ".join((pages.DOCS.parent / "README.md").read_text(encoding="utf-8").split())
-    assert sentence.format(*counts, quoted["claims.ours.holds"]) in readme
+    assert sentence.format(*counts, committed["claims.ours.holds"]) in readme
 
 
 def test_a_mark_fills_the_number_before_it_and_must_be_known(quoted_numbers):
-    quoted = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
-    assert quoted.keys() == quoted_numbers.keys()
-    page = "at most 0.5(2)<!--a.b--> (r = 7<!--c-->)"
-    assert filled(page, {"a.b": "1.25(3)", "c": "0.9"}) == "at most 1.25(3) (r = 0.9)"
+    committed = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
+    assert committed.keys() == quoted_numbers.keys()
+    page = "at most +0.5(2)<!--a.b--> (r = 7(2.1)<!--c-->)"
+    assert filled(page, {"a.b": "−1.25(3)", "c": "0.9"}) == "at most −1.25(3) (r = 0.9)"
     with pytest.raises(KeyError):
         filled(page, {"c": "0.9"})

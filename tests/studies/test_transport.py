@@ -333,15 +333,6 @@ def test_every_point_has_its_rows():
     assert {verdict for row, verdict in judged if any(x in row.quantity for x in named)} == {AGREES}
 
 
-def test_the_page_has_the_coefficients_of_the_long_table():
-    """Both tables, to the last digit."""
-    dilute, page = study_module(STUDY, "dilute"), (STUDY / "README.md").read_text(encoding="utf-8")
-    rows = dilute.read_long_rows(dilute.TABLE)
-    assert len(rows) > 100
-    assert dilute.table_of_limits(rows).strip() in page
-    assert dilute.table_of_diffusion(rows).strip() in page
-
-
 @pytest.mark.slow  # compiles a kernel
 def test_gases_between_walls_have_a_row():
     """As they are simulated, in a box given by its lengths or by its packing."""

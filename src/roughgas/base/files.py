@@ -22,6 +22,7 @@ from importlib import metadata
 from pathlib import Path
 
 from roughgas.base import InputError, __version__
+from roughgas.base.text import without_comments
 
 
 @contextmanager
@@ -276,9 +277,10 @@ def study_module(folder: str | Path, name: str) -> types.ModuleType:
 
 
 def readme(folder: str | Path) -> str:
-    """Return the text of README.md of the study in `folder`, with uniform line ends; "" without.
+    """Return the text of README.md of the study in `folder`; "" without.
 
-    Raises InputError for text that is not UTF-8, exceeds MAX_TEXT_BYTES, or cannot be read.
+    It has uniform line ends, and no comments. Raises InputError for text that is not UTF-8, exceeds
+    MAX_TEXT_BYTES, or cannot be read.
     """
     file = Path(folder, "README.md")
     name = name_in_study(file)
@@ -288,7 +290,7 @@ def readme(folder: str | Path) -> str:
         raise InputError(name, "(not text)", "be text in UTF-8") from error
     except OSError as error:
         raise InputError(name, error.strerror, LEGAL_FILE) from error
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return without_comments(text.replace("\r\n", "\n").replace("\r", "\n"))
 
 
 def name_in_study(path: Path) -> str:

@@ -20,6 +20,7 @@ CONTROL_CHARACTERS = re.compile("[\x00-\x1f\x7f-\x9f]")
 PLAIN_WORD = re.compile(r"[-+.]?[^\W_]+(?:[-+._][^\W_]+)*")
 """Names and numbers, which reStructuredText needs no escapes for."""
 BOLD = re.compile(r"\*\*([^*]+)\*\*")
+COMMENT_BEGIN, COMMENT_END = "<!--", "-->"
 FORMULA_PREFIXES = ("=", "+", "-", "@", "\t")
 """First characters by which a spreadsheet takes a text for a formula."""
 
@@ -49,6 +50,18 @@ def markdown(
         table = _padded(table, align)
         rule = [f"{dashes[-1]:->{len(cell)}}" for cell, dashes in zip(table[0], rule, strict=True)]
     return "".join(f"| {' | '.join(row)} |\n" for row in (table[0], rule, *table[1:]))
+
+
+def without_comments(text: str) -> str:
+    """Return Markdown without its comments `<!--...-->`; one that does not end stays.
+
+    No regular expression does it: it would follow each begin to the end of a text.
+    """
+    begin, *rest = text.split(COMMENT_BEGIN)
+    pieces = (piece.partition(COMMENT_END) for piece in rest)
+    return begin + "".join(
+        after if end else COMMENT_BEGIN + comment for comment, end, after in pieces
+    )
 
 
 def in_csv(value: Any) -> Any:

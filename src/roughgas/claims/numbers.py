@@ -1,7 +1,8 @@
 """Numbers quoted in pages: computed from reduced datasets and verdicts, as text by name.
 
 A page has the mark `<!--NAME-->` right after a number. When the documentation is built, `filled`
-replaces the text before each mark by the number in the file that `write` has written.
+replaces the text before each mark by the number in the file that `write` has written. Numbers of
+evidence, and of studies, are in pages.py.
 """
 
 import json
@@ -31,7 +32,7 @@ MISSING = "–"
 """Replaces a number that a small scale does not simulate."""
 IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
-MARKED_NUMBER = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
+MARKED_NUMBER = re.compile(r"[\w.+−]+(?:\([\d.]+\))?(<!--([\w.]+)-->)")
 VERDICT_KEYS = {"holds": HOLDS, "qualified": QUALIFIED, "fails": FAILS}
 
 

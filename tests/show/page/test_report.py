@@ -147,6 +147,13 @@ def test_a_long_readme_is_searched_in_linear_time(text):
     assert time.process_time() - begin < 5
 
 
+def test_captions_have_no_comments(tmp_path):
+    """Such as the marks of numbers; what is no comment stays."""
+    text = "![x](mine.png)\n\n0.5(2)<!--mine.x--> % <!-- a\nb\n--> of <!-- all"
+    (tmp_path / "README.md").write_text(text)
+    assert captions(tmp_path, ["mine"])["mine"] == in_rst("0.5(2) %  of <!-- all")
+
+
 TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
 CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
 
