@@ -12,7 +12,7 @@ from tests.synthetic import reduced
 from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers, quoted
 from roughgas.claims.pages import in_words, mean_of, numbers_of_pages, rounded, with_error
 from roughgas.claims.verdicts import beside_theory
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.estimates import Estimate
 
 STUDIES_THAT_QUOTE = sorted(path.parent.name for path in pages.STUDIES.glob("*/quoted.py"))
 AT_POINTS = (-0.95, -0.8, 0.0, 0.5)

@@ -16,7 +16,8 @@ from roughgas.base.files import study_module
 from roughgas.claims.numbers import IN_WORDS
 from roughgas.results.comparison import Row, read_rows
 from roughgas.results.row_counts import row_counts
-from roughgas.statistics.errors import Estimate, sum_error
+from roughgas.statistics.errors import sum_error
+from roughgas.statistics.estimates import Estimate
 
 MODULE = "quoted"
 """Module of a study that makes the numbers and tables of its README.md."""
