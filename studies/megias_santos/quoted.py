@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from roughgas import theory
-from roughgas.claims.pages import Evidence, in_words, mean_of, rounded, rows_of, with_error
 from roughgas.judging import Estimate, Row, read_long_rows
+from roughgas.quoting import Evidence, in_words, mean_of, rounded, rows_of, with_error
 from roughgas.tasks import markdown
 
 from .long import (

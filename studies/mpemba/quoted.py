@@ -2,17 +2,22 @@
 
 import json
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from roughgas import config, theory
-from roughgas.claims.pages import Evidence, relative, rounded, rows_of, with_error
-from roughgas.config import PAPER
+from roughgas import theory
 from roughgas.judging import Estimate, Row
+from roughgas.quoting import (
+    Evidence,
+    relative,
+    rounded,
+    rows_of,
+    settings_at_paper_scale,
+    with_error,
+)
 from roughgas.tasks import markdown
 
 from .curves import Crossing, Curve, crossing_of_published, expected, published
@@ -82,15 +87,9 @@ def tables(evidence: Evidence) -> dict[str, str]:
 # ---------------------------------------------------------------------- settings
 
 
-@cache
-def _configuration():
-    return config.load(FOLDER.parents[1] / "config.yaml")
-
-
-@cache
 def _settings(experiment: str):
     """Return the settings of an experiment of this study at the paper's scale."""
-    return _configuration().experiment(f"{FOLDER.name}.{experiment}", PAPER).raw
+    return settings_at_paper_scale(FOLDER, experiment)
 
 
 def _experiment(protocol: str, sample: str, material: Material) -> str:

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from roughgas.claims.pages import (
+from roughgas.judging import Estimate, LongRow, Row, read_long_rows
+from roughgas.quoting import (
     Evidence,
     in_words,
     mean_of,
@@ -13,7 +14,6 @@ from roughgas.claims.pages import (
     rows_of,
     with_error,
 )
-from roughgas.judging import Estimate, LongRow, Row, read_long_rows
 from roughgas.tasks import markdown
 
 from . import dilute

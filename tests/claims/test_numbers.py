@@ -10,8 +10,9 @@ from tests.study_modules import subject
 from tests.synthetic import reduced
 
 from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers, quoted
-from roughgas.claims.pages import in_words, mean_of, numbers_of_pages, rounded, with_error
+from roughgas.claims.pages import numbers_of_pages
 from roughgas.claims.verdicts import beside_theory
+from roughgas.quoting import in_words, mean_of, rounded, with_error
 from roughgas.statistics.estimates import Estimate
 
 STUDIES_THAT_QUOTE = sorted(path.parent.name for path in pages.STUDIES.glob("*/quoted.py"))

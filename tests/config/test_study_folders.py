@@ -19,7 +19,7 @@ from roughgas.base.reading import read_yaml
 from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_OF_ACCURACY
 from roughgas.config.study_folders import task_settings, write_effective
 
-ROOMS = ("gas", "plotting", "judging", "tasks", "tasks.dsmc", "tasks.driven_dsmc")
+ROOMS = ("gas", "plotting", "judging", "quoting", "tasks", "tasks.dsmc", "tasks.driven_dsmc")
 ROOMS += ("tasks.free_cooling", "tasks.transport", "theory")
 PUBLIC = {f"roughgas.{room}" for room in ROOMS}
 MINIMAL_STUDY = "experiments:\n  bed: {extends: vibrated, particles: 80}\n"

@@ -9,8 +9,8 @@ from raw import build, run_point
 from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
-from roughgas.simulation.energies import energies, fitted_flow, vertical_share
-from roughgas.simulation.energy_averages import ratio_of_means
+from roughgas.simulation.energies import energies, fitted_flow
+from roughgas.simulation.energy_averages import ratio_of_means, vertical_share
 from roughgas.simulation.energy_balance import balance, energy_exchange, imbalance
 from roughgas.simulation.point import NUMBERS_OF_FLAG, _withdrawn_verdicts
 from roughgas.statistics.errors import blocking

@@ -6,18 +6,13 @@ texts by name. `numbers.filled` takes the numbers by their marks, such as STUDY.
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
 
-import numpy as np
-
 from roughgas.base.files import study_module
-from roughgas.claims.numbers import IN_WORDS
 from roughgas.results.comparison import Row, read_rows
 from roughgas.results.row_counts import row_counts
-from roughgas.statistics.errors import sum_error
-from roughgas.statistics.estimates import Estimate
 
 MODULE = "quoted"
 """Module of a study that makes the numbers and tables of its README.md."""
@@ -50,47 +45,3 @@ def _modules(root: str | Path) -> Iterator[tuple[str, ModuleType]]:
     """Yield the name of each study with quoted.py, and this module."""
     for path in sorted(Path(root).glob(f"studies/*/{MODULE}.py")):
         yield path.parent.name, study_module(path.parent, MODULE)
-
-
-# ---------------------------------------------------------------------- for studies
-
-
-def rows_of(evidence: Evidence, study: str, quantity: str, tier: str = "") -> Mapping[str, Row]:
-    """Return the rows of a quantity of a study by their state `at`, of all tiers or of one."""
-    return {
-        row.at: row
-        for name, row in evidence
-        if (name, row.quantity) == (study, quantity) and tier in ("", row.tier)
-    }
-
-
-def relative(row: Row) -> Estimate:
-    """Return ours over theirs, which count as exact."""
-    return row.ours.scaled(1.0 / row.theirs.value)
-
-
-def mean_of(estimates: Iterable[Estimate]) -> Estimate:
-    """Return the mean of independent estimates, with the error that follows from their errors."""
-    value, stderr, dof = np.array(list(estimates)).T
-    error = sum_error(stderr, dof)
-    return Estimate(float(value.mean()), float(error.stderr) / len(value), float(error.dof))
-
-
-def rounded(value: float, decimals: int = 0) -> str:
-    """Return a number as text with so many decimals, and with a minus sign, no hyphen."""
-    return _with_minus(f"{value:.{decimals}f}")
-
-
-def with_error(estimate: Estimate, scale: float = 1.0) -> str:
-    """Return an estimate times `scale` as text, such as −0.0012(3)."""
-    return _with_minus(f"{estimate.scaled(scale)}")
-
-
-def in_words(count: int) -> str:
-    """Return a count as a word, or in digits if it is large."""
-    words = IN_WORDS.split()
-    return words[count] if count < len(words) else f"{count}"
-
-
-def _with_minus(text: str) -> str:
-    return text.replace("-", "−")
