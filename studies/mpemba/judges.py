@@ -55,10 +55,10 @@ def _crosses(two: Pair) -> Finding:
     if not crosses and theirs.depth < SIGNIFICANT_DEPTH * ours.depth_stderr:
         raise NotTestedError(
             f"The published difference, {theirs.depth:.4f} T_st at most, is below "
-            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {ours.depth_stderr:.4f}."
+            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {ours.depth_stderr:.4f}"
         )
     if crosses and ours.stderr > LARGEST_ERROR * theirs.time:
-        raise NotTestedError("The curves are too noisy to tell where they cross.")
+        raise NotTestedError("the curves are too noisy to tell where they cross")
     gap = time_of(ours).minus(time_of(theirs))
     close = abs(gap.value) < CLOSE * theirs.time
     reason = (
@@ -102,7 +102,7 @@ def _curve_finding(two, sample, limit):
     gaps = quarters._replace(value=quarters.value - published)
     probability = gaps.probability()
     if math.isnan(probability):
-        raise NotTestedError("The covariance of the quarters of a curve needs more seeds.")
+        raise NotTestedError("the covariance of the quarters of a curve needs more seeds")
     largest = int(np.argmax(np.abs(gaps.value)))
     is_close = abs(gaps.value[largest]) < CLOSE_CURVE
     reason = (
@@ -123,7 +123,7 @@ def spins_are_remembered(gas: xr.Dataset) -> Finding:
     if not has_hump and expected_depth < SIGNIFICANT_DEPTH * depth.stderr:
         raise NotTestedError(
             f"The depth by the rate equations, {expected_depth:.4f} T_st, is below "
-            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {depth.stderr:.4f}."
+            f"{SIGNIFICANT_DEPTH:g} of our standard errors, {depth.stderr:.4f}"
         )
     reason = (
         f"At {time:.2f} the gas is colder than in the end by the share {depth}, by "

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from roughgas.base import Record, as_json
@@ -24,12 +25,12 @@ WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_wall
 SHEARED_POINTS = {
     "r9_b95": (0.9, -0.95),
     "r8_b80": (0.8, -0.8),
-    "r8_b95": (0.8, -0.95),
+    "r8_b90": (0.8, -0.9),
     "r9_b50": (0.9, 0.5),
 }
-"""Points (r, beta) of the sheared gas that are quoted individually."""
+"""Points (r, beta) of the sheared gas that are quoted individually; all are known to be steady."""
 MISSING = "–"
-"""Replaces a number that a small scale does not simulate."""
+"""Replaces a number that a small scale does not simulate, or of a gas not known to be steady."""
 IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
 MARKED_NUMBER = re.compile(r"[\w.+−]+(?:\([\d.]+\))?(<!--([\w.]+)-->)")
@@ -131,9 +132,9 @@ def _text(value: float, digits: int) -> str:
 def _estimate_text(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
     """Return the variable `name` of a reduced dataset at a point, with its error, as text.
 
-    It is MISSING at a point that was not simulated.
+    It is MISSING at a point that was not simulated, or is not known to be steady.
     """
-    if r not in gas.r or beta not in gas.beta:
+    if r not in gas.r or beta not in gas.beta or np.isnan(gas[name].sel(r=r, beta=beta)):
         return MISSING
     point = gas.sel(r=r, beta=beta)
     if f"{name}_stderr" not in point:
