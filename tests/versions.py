@@ -4,7 +4,8 @@
     python -m tests.versions oldest python3.11
 
 builds the wheel, installs it into a new environment, without extras and with the newest or
-the oldest versions of what it needs, and runs tests that need no more than that. `coming` takes
+the oldest versions of its dependencies, and runs tests that need no more than these, some of them
+once more with kernels compiled by numba's public functions alone. `coming` takes
 pre-releases of numba, and Snakemake past its upper bound: it runs the tests of what is
 used of numba and Snakemake though it is private to them. `make versions` does all that it can here.
 """
@@ -25,12 +26,13 @@ BASE = (
     "tests/kernel/test_collision_rule.py",
     "tests/compiling",
     "tests/observables/test_each.py",
-    "tests/observables/test_each.py",
     "tests/simulation/test_gas.py",
     "tests/statistics",
     "tests/test_bits.py",
 )
 """Tests that need nothing but the package; those of bits compare numbers across all versions."""
+PUBLIC = ("tests/kernel/test_collision_rule.py", "tests/test_bits.py")
+"""Tests that are repeated with kernels compiled by numba's public functions alone."""
 PRIVATE = ("tests/compiling", "tests/robustness/test_stopping.py")
 """Tests of what is used though it is private."""
 QUICK = "not slow and not remedy and not browser and not slurm"
@@ -64,9 +66,12 @@ def check(way, python):
         subprocess.run([*pip, "install", *early, *packages], check=True)
         subprocess.run([*pip, "install", "--no-deps", wheel], check=True)
         subprocess.run([*pip, "freeze"], check=True)
+        run = [pip[0], "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", QUICK]
         tests = PRIVATE if way == "coming" else BASE
-        run = [pip[0], "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", QUICK, *tests]
-        subprocess.run(run, cwd=ROOT, env=environ, check=True)
+        subprocess.run([*run, *tests], cwd=ROOT, env=environ, check=True)
+        if way != "coming":
+            environ["ROUGHGAS_PUBLIC_NUMBA"] = "1"
+            subprocess.run([*run, *PUBLIC], cwd=ROOT, env=environ, check=True)
 
 
 if __name__ == "__main__":
