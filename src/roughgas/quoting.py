@@ -4,6 +4,7 @@ quoted.py has the functions `numbers` and `tables` of all rows of evidence, whic
 name; roughgas.claims.pages collects them.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -12,11 +13,12 @@ import numpy as np
 
 from roughgas import config
 from roughgas.base import Record
-from roughgas.claims.numbers import IN_WORDS
+from roughgas.base.text import with_minus_signs
+from roughgas.claims.numbers import in_words
 from roughgas.claims.pages import Evidence
 from roughgas.results.comparison import Row
-from roughgas.statistics.errors import sum_error
-from roughgas.statistics.estimates import Estimate
+from roughgas.results.row_verdicts import AGREES, DIFFERS, NOT_TESTED, verdicts
+from roughgas.statistics.estimates import Estimate, mean_with_error
 
 
 @cache
@@ -38,6 +40,12 @@ def rows_of(evidence: Evidence, study: str, quantity: str, tier: str = "") -> Ma
     }
 
 
+def verdict_counts(evidence: Evidence, study: str) -> Counter[str]:
+    """Return the numbers of rows of a study by verdict; verdicts depend on all rows of evidence."""
+    judged = zip(evidence, verdicts([row for _, row in evidence]), strict=True)
+    return Counter(verdict for (name, _), verdict in judged if name == study)
+
+
 def relative(row: Row) -> Estimate:
     """Return ours over theirs, which count as exact."""
     return row.ours.scaled(1.0 / row.theirs.value)
@@ -45,26 +53,14 @@ def relative(row: Row) -> Estimate:
 
 def mean_of(estimates: Iterable[Estimate]) -> Estimate:
     """Return the mean of independent estimates, with the error that follows from their errors."""
-    value, stderr, dof = np.array(list(estimates)).T
-    error = sum_error(stderr, dof)
-    return Estimate(float(value.mean()), float(error.stderr) / len(value), float(error.dof))
+    return mean_with_error(*np.array(list(estimates)).T)
 
 
 def rounded(value: float, decimals: int = 0) -> str:
     """Return a number as text with so many decimals, and with a minus sign, no hyphen."""
-    return _with_minus(f"{value:.{decimals}f}")
+    return with_minus_signs(f"{value:.{decimals}f}")
 
 
 def with_error(estimate: Estimate, scale: float = 1.0) -> str:
     """Return an estimate times `scale` as text, such as −0.0012(3)."""
-    return _with_minus(f"{estimate.scaled(scale)}")
-
-
-def in_words(count: int) -> str:
-    """Return a count as a word, or in digits if it is large."""
-    words = IN_WORDS.split()
-    return words[count] if count < len(words) else f"{count}"
-
-
-def _with_minus(text: str) -> str:
-    return text.replace("-", "−")
+    return with_minus_signs(f"{estimate.scaled(scale)}")

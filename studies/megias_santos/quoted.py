@@ -7,7 +7,7 @@ import numpy as np
 from roughgas import theory
 from roughgas.judging import Estimate, Row, read_long_rows
 from roughgas.quoting import Evidence, in_words, mean_of, rounded, rows_of, with_error
-from roughgas.tasks import markdown
+from roughgas.tasks import markdown, with_minus_signs
 
 from .long import (
     EVENT_LIMIT,
@@ -160,7 +160,7 @@ def _homogeneous_states() -> str:
     ratios, gaps, slopes = committed(HOMOGENEOUS_R), _homogeneous_gaps(), committed(SIZE_EFFECT)
     lines = [
         [
-            ", ".join(f"{value:g}" for value in state).replace("-", "−"),
+            with_minus_signs(", ".join(f"{value:g}" for value in state)),
             with_error(ratios[state]),
             _signed(gaps[state], THOUSANDTHS),
             rounded(gaps[state].sigma, 1),

@@ -18,7 +18,7 @@ from roughgas.quoting import (
     settings_at_paper_scale,
     with_error,
 )
-from roughgas.tasks import markdown
+from roughgas.tasks import markdown, with_minus_signs
 
 from .curves import Crossing, Curve, crossing_of_published, expected, published
 from .evidence import COMPARED
@@ -44,7 +44,7 @@ class Material(NamedTuple):
     @property
     def cell(self) -> str:
         """The state in a table."""
-        return f"{self.r:g}, {self.beta:g}".replace("-", "−")
+        return with_minus_signs(f"{self.r:g}, {self.beta:g}")
 
 
 MATERIALS = {

@@ -26,6 +26,7 @@ from roughgas.tasks import (
     slices_along,
     stack_rows,
     table_cell,
+    with_minus_signs,
 )
 from roughgas.theory import lun_ratio, moment_of_inertia, shear_factor
 
@@ -257,7 +258,7 @@ def point_label(point: xr.Dataset) -> str:
     shape = "spheres" if int(point.dimension) == 3 else "disks"
     usual = moment_of_inertia(int(point.dimension))
     q = "" if float(point.inertia) == usual else f", q = {float(point.inertia):g}"
-    beta = str(point.beta.values).replace("-", "−")
+    beta = with_minus_signs(str(point.beta.values))
     return f"{shape}, r = {point.r.values}, β = {beta}{q}"
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from roughgas import theory
 from roughgas.judging import Estimate, LongRow, read_long_rows
-from roughgas.tasks import markdown
+from roughgas.tasks import markdown, with_minus_signs
 
 from .coefficients import in_equilibrium, point
 from .results import COEFFICIENTS, long_table
@@ -127,6 +127,6 @@ def table_of_diffusion(rows: list[LongRow]) -> str:
     """Return the coefficient of self-diffusion over theory of all driven disks, Markdown."""
     coefficients = driven(rows)
     r, beta = (sorted({point[k] for point in coefficients}) for k in range(2))
-    head = ["driven disks", *(f"β = {x:g}".replace("-", "−") for x in beta)]
+    head = ["driven disks", *(with_minus_signs(f"β = {x:g}") for x in beta)]
     lines = [[f"r = {y:g}", *(f"{coefficients[y, x]}" for x in beta)] for y in reversed(r)]
     return markdown(head, lines)

@@ -14,7 +14,7 @@ from roughgas.quoting import (
     rows_of,
     with_error,
 )
-from roughgas.tasks import markdown
+from roughgas.tasks import markdown, with_minus_signs
 
 from . import dilute
 from .judges import HOLDS_WITHIN
@@ -136,7 +136,7 @@ def _coordinates(name: str, at: str) -> Iterator[tuple[str, str]]:
     """Yield the coordinates of a state such as "r = 0.7, beta = -0.5"."""
     for pair in at.split(", "):
         coordinate, value = pair.split(" = ")
-        yield f"{name}.{coordinate}", value.replace("-", "−")
+        yield f"{name}.{coordinate}", with_minus_signs(value)
 
 
 def _elastic(evidence: Evidence) -> dict[str, list[Estimate]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from tests.pages import DOCS
 
 from roughgas.base.files import study_module
+from roughgas.base.text import without_comments
 from roughgas.results.comparison import read_rows
 from roughgas.results.row_verdicts import verdicts
 
@@ -16,7 +17,7 @@ JUDGED = list(zip(ROWS, verdicts([row for _, row in ROWS]), strict=True))
 
 
 def words(path):
-    return " ".join(Path(ROOT, path).read_text(encoding="utf-8").split())
+    return " ".join(without_comments(Path(ROOT, path).read_text(encoding="utf-8")).split())
 
 
 def test_published_reasons_match_the_code():

@@ -52,6 +52,11 @@ def markdown(
     return "".join(f"| {' | '.join(row)} |\n" for row in (table[0], rule, *table[1:]))
 
 
+def with_minus_signs(number: str) -> str:
+    """Return the text of a number with minus signs, U+2212, for its hyphens."""
+    return number.replace("-", "−")
+
+
 def without_comments(text: str) -> str:
     """Return Markdown without its comments `<!--...-->`; one that does not end stays.
 

@@ -17,6 +17,7 @@ import xarray as xr
 
 from roughgas.base import Record, as_json
 from roughgas.base.files import write_text
+from roughgas.base.text import with_minus_signs
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED, theory_of
 from roughgas.data.reduced import STEADY_SHARE, read_reduced
 from roughgas.statistics.estimates import Estimate
@@ -112,7 +113,7 @@ def _largest_deviation(gas: xr.Dataset, name: str) -> dict[str, str]:
         r, beta = (
             float(coordinate) for coordinate in inside.stack(at=("r", "beta")).idxmax("at").item()
         )
-        location = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
+        location = {"r": f"{r:g}", "beta": with_minus_signs(f"{beta:g}")}
     beyond = deviation.where(deviation.r < 0.8)
     return {"most": _largest_text(inside), "dissipative": _text(float(beyond.max()), 3)} | location
 
@@ -169,17 +170,22 @@ def _smooth_disks(rough: xr.Dataset) -> dict[str, str]:
     return dict(zip(names, [_estimate_text(rough, "R", 0.9, -1.0), *texts], strict=True))
 
 
+def in_words(count: int) -> str:
+    """Return a count as a word, or in digits if it is large."""
+    words = IN_WORDS.split()
+    return words[count] if count < len(words) else f"{count}"
+
+
 def _counts(claims: Sequence[Record]) -> dict[str, str]:
     """Return the numbers of statements of each verdict in words, separately for ours.
 
     `claims` are the entries of claims.json.
     """
-    words = IN_WORDS.split()
     counts: dict[str, str] = {}
     for name, ours in (("claims", False), ("claims.ours", True)):
         verdicts = Counter(claim["verdict"] for claim in claims if claim["ours"] == ours)
         counts |= {
-            f"{name}.{key}": words[verdicts[verdict]] for key, verdict in VERDICT_KEYS.items()
+            f"{name}.{key}": in_words(verdicts[verdict]) for key, verdict in VERDICT_KEYS.items()
         }
-        counts[f"{name}.all"] = words[verdicts.total()]
+        counts[f"{name}.all"] = in_words(verdicts.total())
     return counts

@@ -17,7 +17,7 @@ import xarray as xr
 from roughgas.base import Attributes
 from roughgas.data.reduced import GRID_DIMS, STEADY_SHARE, read_by_name
 from roughgas.statistics.errors import sum_error
-from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.estimates import Estimate, mean_with_error
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
 
@@ -89,8 +89,7 @@ class Sample(NamedTuple):
 
     def mean(self) -> Estimate:
         """Return the mean of the values, with the error that follows from their errors."""
-        stderr, dof = sum_error(self.stderr, self.dof)
-        return Estimate(float(self.value.mean()), float(stderr) / self.size, float(dof))
+        return mean_with_error(self.value, self.stderr, self.dof)
 
     def rms(self) -> float:
         """Return the root mean square of the values, which measures their distance from 0."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from roughgas.base import InputError, NamedValues, Record, __version__, import_extra, on_one_line
 from roughgas.base.files import atomic_write
+from roughgas.base.text import with_minus_signs
 from roughgas.statistics.estimates import Estimate
 
 TEXT = "article.typ"
@@ -98,7 +99,7 @@ def excerpt(rows: Iterable[Mapping[str, str]]) -> NamedValues:
             for name, columns in COLUMNS.items()
             for column in columns
         ]
-        lines.append([f"{beta:g}".replace("-", "−"), *cells])
+        lines.append([with_minus_signs(f"{beta:g}"), *cells])
     head = ["β", *(COLUMN_HEADS[column] for columns in COLUMNS.values() for column in columns)]
     return {"r": f"{r:g}", "head": head, "rows": lines}
 
@@ -109,7 +110,7 @@ def verdict(claim: Record) -> dict[str, str]:
     deciding = ""
     if number is not None and number["value"] is not None:
         error = math.nan if number["error"] is None else number["error"]
-        deciding = f"{number['label']}: {Estimate(number['value'], error)}".replace("-", "−")
+        deciding = with_minus_signs(f"{number['label']}: {Estimate(number['value'], error)}")
     quote = f"Ours: {claim['quote']}" if claim["ours"] else claim["quote"]
     return {"quote": quote, "deciding": deciding, "verdict": claim["verdict"]}
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from roughgas.base.text import with_minus_signs
 from roughgas.results.comparison import TIERS, Row
 from roughgas.results.row_verdicts import (
     AGREES,
@@ -95,7 +96,7 @@ def _of_biases(rows: Sequence[tuple[str, Row]]) -> Iterator[tuple[str, str]]:
     yield "biases.common", f"{sum(bias.is_common for bias in tests)}"
     for bias in tests:
         if bias.tier == "simulation" and bias.study in BIASED:
-            yield f"t.{bias.study}", f"{bias.mean.value:.2f}".replace("-", "−")
+            yield f"t.{bias.study}", with_minus_signs(f"{bias.mean.value:.2f}")
             yield f"t.{bias.study}.stderr", f"{bias.mean.stderr:.2f}"
             yield f"t.{bias.study}.probability", _probability_text(bias.mean.probability)
             yield f"t.{bias.study}.rows", f"{bias.mean.dof + 1:.0f}"
@@ -103,4 +104,4 @@ def _of_biases(rows: Sequence[tuple[str, Row]]) -> Iterator[tuple[str, str]]:
 
 def _probability_text(probability: float) -> str:
     """Return a probability as text of two digits, such as 0.0021 or 3.1e−09."""
-    return f"{probability:.2g}".replace("-", "−")  # marks take no hyphen for part of a number
+    return with_minus_signs(f"{probability:.2g}")  # marks take no hyphen for part of a number

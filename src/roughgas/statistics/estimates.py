@@ -7,6 +7,8 @@ import math
 from statistics import NormalDist
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from roughgas.statistics.errors import sum_error
 from roughgas.statistics.student import t_probability, t_quantile
 
@@ -128,6 +130,15 @@ class Estimate(NamedTuple):
             return f"{round(value, decimals):.0f}({round(stderr, decimals):.0f})"
         shown = f"{stderr:.{decimals}f}" if stderr >= 1.0 else str(round(stderr * 10**decimals))
         return f"{value:.{decimals}f}({shown})"
+
+
+def mean_with_error(value: np.ndarray, stderr: np.ndarray, dof: np.ndarray) -> Estimate:
+    """Return the mean of independent numbers, with the error that follows from their errors.
+
+    `value`, `stderr` and `dof`, the degrees of freedom of each error, have shape (n,).
+    """
+    error = sum_error(stderr, dof)
+    return Estimate(float(value.mean()), float(error.stderr) / len(value), float(error.dof))
 
 
 def decimals_of(stderr: float) -> int:

@@ -22,6 +22,7 @@ from msgspec import to_builtins
 
 from roughgas.base import CollapseError, InputError, NamedValues, Record, markdown, short_repr
 from roughgas.base.fields import OwnSettings
+from roughgas.base.text import with_minus_signs
 from roughgas.data.variables import Variable, described
 from roughgas.statistics.estimates import Estimate
 
@@ -176,5 +177,5 @@ def table_cell(data: xr.Dataset, name: str, format_spec: str = "", factor: float
 
 def point_title(point: xr.Dataset) -> str:
     """Return a title with the experiment, r and beta of a point, a dataset, as in settings."""
-    beta = str(np.asarray(point.beta)).replace("-", "−")
+    beta = with_minus_signs(str(np.asarray(point.beta)))
     return f"{point.experiment.values}, r = {point.r.values}, β = {beta}"
