@@ -4,6 +4,7 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 friction                      one question beyond the paper, of a folder of studies/
 #   snakemake -j2 extensions                    all of them
+#   snakemake -j2 papers                        papers of other groups, a few lines of configuration each
 #   snakemake -j2 evidence                      every published number known to us, compared with ours
 #   snakemake -j2 evidence_long                 what takes longer: tables studies/NAME/long.csv
 #   snakemake -j2 numbers                       the numbers that docs/results.md quotes
@@ -84,6 +85,11 @@ rule extensions:
         paths.documents(SCALE, "run_times_extensions") if run_products.beyond else [],
 
 
+rule papers:
+    input:
+        from_wildcards(run_products.papers, scale=SCALE),
+
+
 rule evidence:
     input:
         paths.figure_files(["evidence"], SCALE),
@@ -148,6 +154,7 @@ rule everything:
     input:
         rules.figures.input,
         rules.extensions.input,
+        rules.papers.input,
         from_wildcards(run_products.every_reduced),
         rules.movies.input,
         rules.hard_cases.input,

@@ -65,7 +65,7 @@ rule quoted_by_documentation:
     log:
         "logs/figures/{folder}{file}.log",
     wildcard_constraints:
-        file=alternatives(["evidence.csv", "numbers.json"]),
+        file=alternatives(["evidence.csv", "numbers.json", "papers.csv"]),
     message:
         "write {output}"
     shell:
@@ -100,6 +100,26 @@ rule page_of_evidence:
         "write {output}"
     shell:
         "python -P -m roughgas.steps evidence_page {input:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule table_of_papers:
+    # of other groups, each reproduced by a study
+    input:
+        claims=from_wildcards(run_products.papers_claims),
+        data=from_wildcards(run_products.papers_data),
+    output:
+        table="results/{scale}/papers.csv",
+        page="results/{scale}/papers.md",
+    log:
+        "logs/{scale}/papers.log",
+    params:
+        code=lambda wildcards: run_products.papers_code(),
+        studies=lambda wildcards: run_products.papers_texts(),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps papers {input.claims:q} --data {input.data:q}"
+        " --studies {params.studies:q} --table {output.table:q} --page {output.page:q} > {log:q} 2>&1"
 
 
 rule figure_of_evidence:

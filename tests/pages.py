@@ -25,7 +25,7 @@ from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import COOLING, GRID_PLACEHOLDER, POINT, SPIN
 from roughgas.effects.species import PairSettings, RadiiSettings, SpeciesSettings
-from roughgas.results import row_verdicts
+from roughgas.results import papers, row_verdicts
 from roughgas.statistics import estimates
 from roughgas.tasks import read_variables
 
@@ -81,6 +81,9 @@ def tables():
         for name in ("statistical", "models", "discretisation")
     }
     study_variables["coverage"] = read_variables(STUDIES / "coverage" / "variables.yaml")
+    by_page_and_name["papers", "papers"] = papers.table_of_studies(
+        papers.read(ROOT / "figures" / "papers.csv"), "../studies/{study}/README.md"
+    )
     for (study, name), table in tables_of_studies(ROOT).items():
         by_page_and_name[f"studies/{study}", name] = table
     return by_page_and_name | {

@@ -8,6 +8,11 @@ combine verdicts.
 
 from roughgas.claims.driven import averaged, follows_its_share, follows_over_collisions
 from roughgas.claims.published import references
+from roughgas.claims.variables import (
+    deviation_of,
+    species_temperature_ratio,
+    theory_over_grid,
+)
 from roughgas.claims.verdicts import (
     AGREE,
     AGREE_RELATIVE,

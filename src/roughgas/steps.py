@@ -81,6 +81,7 @@ STEPS: dict[str, str | Function] = {
     "long_table": "claims.published:write_long",
     "living": "show.living:write_living",
     "numbers": "claims.numbers:write",
+    "papers": "results.papers:write",
     "run_times": "results.tables:write_times",
     "study_evidence": "claims.published:write",
     "study_movie": "show.gallery:movie_of_study",

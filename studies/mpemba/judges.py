@@ -77,6 +77,11 @@ def time_of(crossing: Crossing) -> Estimate:
     return Estimate(crossing.time, crossing.stderr, crossing.dof)
 
 
+def depth_of(crossing: Crossing) -> Estimate:
+    """Return the largest difference beyond a crossing, in T_st, with its error."""
+    return Estimate(crossing.depth, crossing.depth_stderr, crossing.dof)
+
+
 def are_curves_published(*gases: xr.Dataset) -> Finding:
     """The means over the quarters of each curve are the published ones."""
     curves = [(two, sample) for two in pairs(gases) for sample in two.published]

@@ -1,6 +1,7 @@
 """Numbers and tables of README.md, from evidence, reference.csv, theory and settings."""
 
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -21,8 +22,8 @@ from roughgas.quoting import (
 from roughgas.tasks import markdown, with_minus_signs
 
 from .curves import Crossing, Curve, crossing_of_published, expected, published
-from .evidence import COMPARED
-from .judges import curve_limit
+from .evidence import COMPARED, LOWEST
+from .judges import SIGNIFICANT_DEPTH, curve_limit
 
 FOLDER = Path(__file__).parent
 STUDY = "mpemba"
@@ -72,6 +73,7 @@ def numbers(evidence: Evidence) -> dict[str, str]:
     """Return the numbers in sentences as texts by name."""
     return (
         dict(_crossings(evidence))
+        | dict(_depths(evidence))
         | dict(_published())
         | dict(_curves(evidence))
         | dict(_memory(evidence))
@@ -184,6 +186,28 @@ def _crossings(evidence: Evidence) -> Iterator[tuple[str, str]]:
     yield "smoother.overshoot.rates.z", rounded(rates.z, 1)
     yield "smoother.overshoot.seeds", _seeds("overshoot", smoother)
     yield "less_inelastic.seeds", _seeds("crossing", MATERIALS["less_inelastic"])
+
+
+def _depth_row(evidence: Evidence, protocol: str, material: Material) -> Row:
+    quantity = f"largest difference, in T_st, of {COMPARED[protocol]} that cross"
+    return rows_of(evidence, STUDY, quantity)[material.at]
+
+
+def _depths(evidence: Evidence) -> Iterator[tuple[str, str]]:
+    """Yield depths beyond crossings with their errors, and the seeds that an error would need."""
+    less = MATERIALS["less_inelastic"]
+    yield "less_inelastic.ours.depth", with_error(_depth_row(evidence, "crossing", less).ours)
+    for name in ("smoother_inelastic", "less_inelastic"):
+        row = _depth_row(evidence, "overshoot", MATERIALS[name])
+        yield f"{name}.overshoot.stderr", rounded(row.ours.stderr, 3)
+        needed = (SIGNIFICANT_DEPTH * row.ours.stderr / row.theirs.value) ** 2
+        seeds = needed * int(_seeds("overshoot", MATERIALS[name]))
+        yield f"{name}.overshoot.needed", f"{10 * math.ceil(seeds / 10):d}"
+    row = _depth_row(evidence, "overshoot", MATERIALS["smoother"])
+    yield "smoother.overshoot.depth", with_error(row.ours)
+    for name, material in MATERIALS.items():
+        ours = rows_of(evidence, STUDY, LOWEST)[material.at].ours
+        yield f"{name}.overshoot.below", rounded(PER_CENT * (1.0 - ours.value))
 
 
 def _memory(evidence: Evidence) -> Iterator[tuple[str, str]]:

@@ -20,6 +20,7 @@ from roughgas import base
 from roughgas.base import InputError, NamedValues, Record
 from roughgas.base.files import study_module, write_text
 from roughgas.claims import driven, verdicts
+from roughgas.claims.variables import deviation_of
 from roughgas.claims.verdicts import (
     FAILS,
     NOT_TESTED,
@@ -38,6 +39,8 @@ REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
 Phys. Rev. E 58, 2247 (1998)"""
 STATEMENTS = "statements"
+THEORY = "theory"
+"""Module of a study with functions of a reduced dataset, named after variables: their theory."""
 OPTIONAL_KEYS = ("ours", "conclusion", "refuted_beyond")
 """Keys of a row of claims.yaml that are fields of `Statement` with a default."""
 HEAD_KEYS = ("title", "about", "quotes", "after")
@@ -114,10 +117,12 @@ def read_study(
 
     `title` is the study's. The table may have a head, whose texts replace the default texts; its
     rows are then under `statements`. Judges come from judges.py of the study and from the general
-    modules. `experiments` are the full names, NAME.KEY, of the study's experiments, `reservation`
-    says why its criteria were not fixed before these data. Raises InputError for an unknown judge.
+    modules, the theory of variables from theory.py. `experiments` are the full names, NAME.KEY, of
+    the study's experiments, `reservation` says why its criteria were not fixed before these data.
+    Raises InputError for an unknown judge.
     """
     folder = Path(folder)
+    theory = study_module(folder, THEORY) if (folder / f"{THEORY}.py").exists() else None
     full_names = {name.partition(".")[2]: name for name in experiments} | {"tasks": folder.name}
     judges = (study_module(folder, "judges"),) if (folder / "judges.py").exists() else ()
     table, statements = _read(folder / "claims.yaml"), []
@@ -128,11 +133,13 @@ def read_study(
             ]
         }
         try:
-            statements.append(_statement(name, row, (*GENERAL_MODULES, *judges)))
+            statements.append(_statement(name, row, (*GENERAL_MODULES, *judges), theory))
         except KeyError as error:
-            key = f"studies/{folder.name}/claims.yaml: {name}: judge"
-            legal = "be a function of roughgas.judging or judges.py"
-            raise InputError(key, error, legal) from error
+            key, file = ("variable", "theory.py") if "variable" in row else ("judge", "judges.py")
+            legal = f"be a function of {file}" + " or roughgas.judging" * (key == "judge")
+            raise InputError(
+                f"studies/{folder.name}/claims.yaml: {name}: {key}", error, legal
+            ) from error
     head = {key: table[key] for key in HEAD_KEYS if key in table} if STATEMENTS in table else {}
     texts = {"title": f"{title}: the verdicts"} | DEFAULT_TEXTS | head
     texts |= {"about": texts["about"].format(name=folder.name, reference=REFERENCE)}
@@ -144,13 +151,20 @@ def _read(path: Path) -> Any:
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
-def _statement(name: str, row: Record, modules: tuple[ModuleType, ...]) -> Statement:
+def _statement(
+    name: str, row: Record, modules: tuple[ModuleType, ...], theory: ModuleType | None
+) -> Statement:
     """Return the statement `name` from its row in claims.yaml, with its judge from the modules.
 
-    Raises KeyError for an unknown judge.
+    `theory` is theory.py of the study, or None. Raises KeyError for an unknown judge.
     """
     functions = {key: function for module in modules for key, function in vars(module).items()}
-    judge = functions[row["judge"]] if "judge" in row else _agrees(row, functions)
+    if "judge" in row:
+        judge = functions[row["judge"]]
+    elif "variable" in row:
+        judge = _agrees_with_theory(row, (vars(theory) if theory else {})[row["variable"]])
+    else:
+        judge = _agrees(row, functions)
     optional = {key: row[key] for key in OPTIONAL_KEYS if key in row}
     experiments, fixed = tuple(row["experiments"]), Fixed(**row["fixed"])
     return Statement(name, row["quote"], experiments, judge, row["criterion"], fixed, **optional)
@@ -165,7 +179,29 @@ def _agrees(row: Record, functions: Mapping[str, Callable[..., Any]]) -> Callabl
     sample, reference = functions[row.get("sample", "deviation")], row["agrees_with"]
     if row.get("in_proportion"):
         return lambda gas: verdicts.agreement_in_proportion(gas, reference)
-    return lambda *datasets: verdicts.agreement(sample(*datasets), reference)
+    return lambda *datasets: verdicts.agreement(sample(*datasets), reference, **_tolerances(row))
+
+
+def _agrees_with_theory(row: Record, theory: Callable[..., xr.DataArray]) -> Callable[..., Finding]:
+    """Return the judge of a row of claims.yaml with `variable`, the name of a measured quantity.
+
+    It judges whether the variable minus `theory`, a function of the dataset, is compatible with
+    zero.
+    """
+    variable, relative = row["variable"], row.get("relative", False)
+
+    def judge(gas: xr.Dataset) -> Finding:
+        """Return the finding on a reduced dataset."""
+        sample = deviation_of(gas, variable, theory(gas), relative)
+        return verdicts.agreement(sample, row["agrees_with"], **_tolerances(row))
+
+    return judge
+
+
+def _tolerances(row: Record) -> dict[str, float]:
+    """Return the tolerances of `verdicts.agreement` that a row of claims.yaml sets."""
+    names = {"within": "agree", "refuted_beyond": "disagree"}
+    return {names[key]: row[key] for key in names if key in row}
 
 
 def _size(data: xr.Dataset) -> str:

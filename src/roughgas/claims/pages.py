@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from roughgas.base.files import study_module
+from roughgas.results import papers
 from roughgas.results.comparison import Row, read_rows
 from roughgas.results.row_counts import row_counts
 
@@ -32,9 +33,17 @@ def numbers_of_pages(root: str | Path) -> dict[str, str]:
 
 
 def tables_of_studies(root: str | Path) -> dict[tuple[str, str], str]:
-    """Return the tables in README.md of the studies in `root`, Markdown by study and name."""
+    """Return the tables in README.md of the studies in `root`, Markdown by study and name.
+
+    The table `verdicts` is in every study of another group's paper.
+    """
     evidence = read_rows(Path(root, "figures", "evidence.csv"))
-    return {
+    rows = papers.read(Path(root, "figures", "papers.csv"))
+    verdicts = {
+        (study, "verdicts"): papers.table_of_statements([row for row in rows if row.study == study])
+        for study in {row.study for row in rows}
+    }
+    return verdicts | {
         (study, name): table
         for study, module in _modules(root)
         for name, table in module.tables(evidence).items()

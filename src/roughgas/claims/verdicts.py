@@ -356,25 +356,28 @@ def is_large(value: Estimate, tolerance: float) -> bool:
     return value.is_significant and abs(value.value) > tolerance
 
 
-def agreement(sample: Sample, reference: str) -> Finding:
+def agreement(
+    sample: Sample, reference: str, agree: float = AGREE, disagree: float = DISAGREE
+) -> Finding:
     """Judge whether the differences in `sample` are compatible with zero; return the finding.
 
-    The values are R minus a reference, whose name, for sentences, is `reference`. A point is off if
-    it differs from 0 significantly and by more than a tolerance. The verdict is HOLDS if no point
-    is off by more than AGREE and the errors are too large to tell at no more than the share
-    EXCEPTIONS of the points; else QUALIFIED if no more than EXCEPTIONS are off by more than
-    DISAGREE; else FAILS. Raises NotTestedError if the errors are too large at more than half of the
-    points, and if they hide deviations of DISAGREE at half of the points, unless it FAILS.
+    The values are R, or another quantity, minus a reference, whose name, for sentences, is
+    `reference`. A point is off if it differs from 0 significantly and by more than a tolerance. The
+    verdict is HOLDS if no point is off by more than `agree` and the errors are too large to tell at
+    no more than the share EXCEPTIONS of the points; else QUALIFIED if no more than EXCEPTIONS are
+    off by more than `disagree`; else FAILS. Raises NotTestedError if the errors are too large at
+    more than half of the points, and if they hide deviations of `disagree` at half of the points,
+    unless it FAILS.
     """
-    off, far, vague = sample.off(AGREE), sample.off(DISAGREE), sample.vague(AGREE)
+    off, far, vague = sample.off(agree), sample.off(disagree), sample.vague(agree)
     if vague.mean() > 0.5:
         raise NotTestedError(f"the errors are too large at {vague.sum()} of {sample.size} points")
     verdict = grade(not off.any() and vague.mean() <= EXCEPTIONS, far.mean() <= EXCEPTIONS)
     if verdict != FAILS:
-        check_power(sample.detectable(), DISAGREE)
+        check_power(sample.detectable(), disagree)
     (largest, point), mean = sample.largest(), sample.mean()
     reason = (
-        f"{int((np.abs(sample.value) <= AGREE).sum())} of {sample.size} points within {AGREE:g} of "
+        f"{int((np.abs(sample.value) <= agree).sum())} of {sample.size} points within {agree:g} of "
         f"{reference}; the largest difference is {text(largest)} at {point}, the mean {text(mean)}."
     )
     if vague.mean() > EXCEPTIONS:

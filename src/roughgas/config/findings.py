@@ -22,7 +22,7 @@ WITHOUT_EFFECT = {"description", "extends", "seeds_per_job", "betas_per_job"}
 """Keys of an experiment that do not affect its data."""
 CRITERION_KEYS = {
     *("experiments", "judge", "agrees_with", "sample", "in_proportion"),
-    *("criterion", "refuted_beyond"),
+    *("variable", "relative", "within", "criterion", "refuted_beyond"),
 }
 """Keys of a statement in claims.yaml that say how it is judged."""
 HEAD = """\

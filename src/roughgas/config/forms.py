@@ -39,9 +39,9 @@ RESERVED = frozenset(
     evidence_long explore explore_extensions extensions family fig1a fig1b fig2a fig2b figure
     figure_of_evidence figures front hard_cases hard_cases_chaos hard_cases_collapse
     hard_cases_cooling living living_page long_table movie movies numbers page page_of_evidence
-    paper picture_for_talks pictures plot point quoted_by_documentation quoted_numbers reduce report
-    rows_of_evidence run_times run_times_extensions study_evidence study_movie study_page
-    study_slides table table_of_extensions task
+    paper papers picture_for_talks pictures plot point quoted_by_documentation quoted_numbers reduce
+    report rows_of_evidence run_times run_times_extensions study_evidence study_movie study_page
+    study_slides table table_of_extensions table_of_papers task
     """.split()
 )
 """Names forbidden for experiments: the workflow has rules and products called so."""
@@ -419,8 +419,18 @@ class StudyForm(Settings, frozen=True, kw_only=True):
     """The keys of studies/NAME/config.yaml."""
 
     heading: Annotated[
-        Literal["paper", "beyond", "accuracy"],
-        described("The heading of the report that lists the study; `beyond` by default."),
+        Literal["paper", "beyond", "papers", "accuracy"],
+        described(
+            "The heading of the report that lists the study; `papers` for the study of a `paper`, "
+            "else `beyond` by default."
+        ),
+    ]
+    paper: Annotated[
+        str,
+        Meta(
+            min_length=1,
+            description="The paper of another group that the study reproduces: authors, journal.",
+        ),
     ]
     documents: Annotated[
         tuple[Name, ...],

@@ -9,6 +9,8 @@ from roughgas.base.fields import OwnSettings, RawSettings
 
 BEYOND = "beyond"
 """Default heading of the report for a study."""
+PAPERS = "papers"
+"""Heading of the report for a study of another group's paper."""
 LONG = "long"
 """Scale of simulations that take hours; their results are committed as long.csv of a study."""
 
@@ -43,7 +45,9 @@ class Study:
     """Experiments, or `tasks`, whose datasets at the scale LONG its table long.csv is made of."""
     tasks: StudyTasks | None = None
     heading: str = BEYOND
-    """Heading of the report that lists the study: paper, beyond or accuracy."""
+    """Heading of the report that lists the study: paper, beyond, papers or accuracy."""
+    paper: str = ""
+    """The paper of another group that the study reproduces, as a reference."""
     documents: Sequence[str] = ()
     """Tables that the report shows as separate pages, in place of one page of the study."""
     modules: Sequence[str] = ()

@@ -14,7 +14,7 @@ from roughgas.base.files import MAX_TABLE_BYTES, MAX_TEXT_BYTES, content_of, nam
 from roughgas.base.reading import read_yaml
 from roughgas.config.configuration import PAPER, Configuration
 from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, STUDIES_OF_ACCURACY
-from roughgas.config.study import BEYOND, LONG, Study, StudyTasks
+from roughgas.config.study import BEYOND, LONG, PAPERS, Study, StudyTasks
 
 TASKS = "tasks"
 MAX_TITLE_LENGTH = 200
@@ -112,7 +112,8 @@ class WrittenStudy:
         self.raw = {key: content for key, content in raw.items() if content is not None}
         self.experiments: dict[str, RawSettings] = self.raw.get("experiments", {})
         self.modules: list[str] = self.raw.get("modules", [])
-        self.heading: str = self.raw.get("heading", BEYOND)
+        self.paper: str = self.raw.get("paper", "")
+        self.heading: str = self.raw.get("heading", PAPERS if self.paper else BEYOND)
 
     @property
     def has_tasks(self) -> bool:
@@ -216,6 +217,7 @@ class WrittenStudy:
             evidence=self.evidence(names, swept),
             long=self.long(names),
             heading=self.heading,
+            paper=self.paper,
             documents=self.raw.get("documents", ()),
             modules=self.modules,
         )

@@ -8,13 +8,14 @@ settings. Results that are files are their paths.
 import os
 from pathlib import Path
 
-from roughgas.base import InputError
+from roughgas.base import InputError, files, sorted_json
 from roughgas.config import PAPER
+from roughgas.config.study import PAPERS
 from roughgas.config.written_study import root_experiments
 from roughgas.results.crate import project_files
 from roughgas.show import catalogue
 from roughgas.workflow.fingerprints import code_beside
-from roughgas.workflow.paths import figure_files, folder_of
+from roughgas.workflow.paths import documents, figure_files, folder_of, with_copy
 from roughgas.workflow.studies import Studies
 from roughgas.workflow.tasks import Tasks
 
@@ -70,6 +71,39 @@ class Products:
             except InputError as error:
                 refused.append(error)
         return files, refused
+
+    def papers(self, scale: str) -> list[str]:
+        """Return the paths of all products of studies of other groups' papers, and their table.
+
+        [] if a configuration has no such study.
+        """
+        studies = [study.name for study in self.studies.under_heading(PAPERS)]
+        if not studies:
+            return []
+        products = [path for study in studies for path in self.studies.products(study)]
+        return [*products, *with_copy(scale, "papers.csv"), *documents(scale, "papers")]
+
+    def papers_claims(self, scale: str) -> list[str]:
+        """Return the paths of the verdicts on other groups' papers."""
+        studies = self.studies.under_heading(PAPERS)
+        return [path for study in studies for path in study.claims(scale, ".json")]
+
+    def papers_data(self, scale: str) -> list[str]:
+        """Return the paths of the reduced datasets of the studies of other groups' papers."""
+        return self.sweeps.reduced(scale, self.studies.swept(PAPERS))
+
+    def papers_texts(self) -> str:
+        """Return the paper and the folder of each study of another group's paper, JSON by study."""
+        studies = self.studies.under_heading(PAPERS)
+        return sorted_json(
+            {study.name: {"paper": study.study.paper, "folder": study.folder} for study in studies}
+        )
+
+    def papers_code(self) -> str:
+        """Return the fingerprint of the code that tabulates other groups' papers."""
+        folders = [study.folder for study in self.studies.under_heading(PAPERS)]
+        hashes = [code_beside(folder, ["config.yaml"]) for folder in folders]
+        return " ".join([files.code_of("results.papers"), *hashes])
 
     def numbers_data(self, scale: str, source: Path) -> list[str]:
         """Return the paths of the reduced datasets that the quoted numbers are computed from.

@@ -127,7 +127,7 @@ class Studies:
         return self.named[PAPER]
 
     def under_heading(self, heading: str) -> Iterator[StudyProducts]:
-        """Yield the studies under a heading of the report: paper, beyond or accuracy."""
+        """Yield the studies under a heading of the report, a key of HEADINGS."""
         return (products for products in self.named.values() if products.study.heading == heading)
 
     def swept(self, heading: str) -> list[str]:
