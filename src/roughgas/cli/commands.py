@@ -20,6 +20,8 @@ Configuration = Annotated[
     str | Path, Option("the configuration (default: config.yaml here, or roughgas's own)", "FILE")
 ]
 Settings = Annotated[str | None, Option("the settings, in place of --config", "JSON")]
+STUDIES_HELP = "folders of studies whose effects and observables --settings name"
+Studies = Annotated[Sequence[str], Option(STUDIES_HELP, "FOLDER")]
 NAME_HELP = "its name in the configuration, or that of a variant: EXPERIMENT/VARIANT"
 Name = Annotated[str, Option(NAME_HELP, "EXPERIMENT", completer=completers.experiments)]
 PATTERN_HELP = "a pattern of the shell's, in quotes, that names match"
@@ -78,6 +80,7 @@ def run(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Restitutions,
     beta: Roughnesses,
     seed: Seeds = None,
@@ -101,7 +104,7 @@ def run(
     from roughgas.cli.run import Selection, write_points
 
     points = experiment, scale, config, settings, r, beta, seed
-    selection = Selection(*points, changes, observe, keep_state)
+    selection = Selection(*points, changes, observe, keep_state, studies)
     write_points(selection, start_from, reseed, output, json)
 
 
@@ -115,6 +118,7 @@ def movie(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Restitutions,
     beta: Roughnesses,
     seed: Seeds = None,
@@ -141,7 +145,8 @@ def movie(
     from roughgas.cli.excerpts import Excerpt, write_movies
     from roughgas.cli.run import Selection
 
-    selection = Selection(experiment, scale, config, settings, r, beta, seed, changes)
+    points = experiment, scale, config, settings, r, beta, seed
+    selection = Selection(*points, changes, studies=studies)
     write_movies(selection, Excerpt(start, length, frames), fps, colour, output)
 
 
@@ -156,6 +161,7 @@ def trajectory(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Annotated[str, Option(RESTITUTION_HELP)],
     beta: Annotated[str, Option(ROUGHNESS_HELP)],
     seed: Annotated[str | None, Option("seed of the random generator (default: 1)")] = None,
@@ -183,7 +189,8 @@ def trajectory(
     from roughgas.cli.excerpts import Excerpt, write_trajectory
     from roughgas.cli.run import Selection
 
-    selection = Selection(experiment, scale, config, settings, r, beta, seed, changes)
+    points = experiment, scale, config, settings, r, beta, seed
+    selection = Selection(*points, changes, studies=studies)
     excerpt = Excerpt(start, length, frames, times)
     write_trajectory(selection, excerpt, start_from, reseed, double, output)
 

@@ -171,7 +171,10 @@ def _settings_rows(attributes: Attributes) -> Iterator[list[str]]:
     yield ["point", point]
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     has_volume = "open" not in experiment["box"]
-    packing_text = f", packing {packing(scene_settings(experiment)):.3g}" if has_volume else ""
+    packing_text = ""
+    if has_volume:  # effects change none, and may be of a study that is not here
+        scene = scene_settings({**experiment, "effects": {}})
+        packing_text = f", packing {packing(scene):.3g}"
     shape = SHAPES[len(experiment["box"])]
     yield ["gas", f"{experiment['particles']} {shape}, box {box} a{packing_text}"]
     if layer := experiment.get("layer"):
@@ -541,10 +544,11 @@ def _table_function(study: str) -> Callable[[Dataset], str]:
 def _study_of_module(module: str) -> WrittenStudy | None:
     """Return the study whose tasks the module named `module` runs; None if no study has the
     module."""
-    for name, folder in folders(config.active_config_path()).items():
+    folders_by_name = folders(config.active_config_path())
+    for name, folder in folders_by_name.items():
         if (folder / f"{module}.py").exists():
             with suppress(InputError, OSError):  # skips a broken study
-                study = WrittenStudy(name, folder)
+                study = WrittenStudy(name, folder, folders_by_name)
                 if module in study.modules:
                     return study
     return None

@@ -103,7 +103,18 @@ EFFECTS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.item
 del EFFECTS["species"]  # a separate key in settings
 """The classes of effects by their names in settings under `effects`, in the order of acting."""
 _ORDER = [*Effects._fields]
-_HASHES: dict[str, str] = {}
+
+
+class Registration(NamedTuple):
+    """A registered effect: its class, the effect that it acts before, and a hash of its sources."""
+
+    kind: type
+    before: str | None
+    source_hash: str
+
+
+REGISTERED: dict[str, Registration] = {}
+"""The effects that users and studies have registered, by name."""
 
 
 def register_effect(name: str, kind: type, before: str | None = None) -> None:
@@ -112,22 +123,23 @@ def register_effect(name: str, kind: type, before: str | None = None) -> None:
     `before` is the name of an effect that acts after it. Raises InputError for an illegal name,
     class or order.
     """
-    redefined = name in _HASHES and is_same_definition(EFFECTS[name], kind)
+    redefined = name in REGISTERED and is_same_definition(EFFECTS[name], kind)
     check_name("effect", name, taken=name in _ORDER and not redefined)
     check_class(name, kind)
     digest = source_hash(name, kind)
     order = [effect for effect in _ORDER if effect != name]
     order.insert(_rank(name, kind, before, order), name)
     _ORDER[:] = order
-    _HASHES[name] = digest
+    REGISTERED[name] = Registration(kind, before, digest)
     _update_registry(EFFECTS | {name: kind})
 
 
 def forget_effect(name: str) -> None:
     """Remove a registered effect; raise InputError for any other name."""
-    if name not in _HASHES:
-        raise InputError("effect", short_repr(name), f"be one of {', '.join(_HASHES) or '(none)'}")
-    del _HASHES[name]
+    if name not in REGISTERED:
+        registered = ", ".join(REGISTERED) or "(none)"
+        raise InputError("effect", short_repr(name), f"be one of {registered}")
+    del REGISTERED[name]
     _ORDER.remove(name)
     _update_registry({effect: kind for effect, kind in EFFECTS.items() if effect != name})
 
@@ -166,7 +178,11 @@ def effects_tuple(effects: NamedValues) -> Effects:
     contains a digest of their sources: machine code is cached by the names of types.
     """
     present = {name: effect for name, effect in effects.items() if effect is not None}
-    registered = tuple((name, _HASHES[name]) for name in _ORDER if name in _HASHES.keys() & present)
+    registered = tuple(
+        (name, REGISTERED[name].source_hash)
+        for name in _ORDER
+        if name in REGISTERED.keys() & present
+    )
     if not registered:
         return Effects(**present)
     names = {*Effects._fields, *present}

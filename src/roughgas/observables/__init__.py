@@ -135,7 +135,9 @@ def _requested_observable(name, settings):
         """Return the observable of a gas; raise NeedsError if it needs spins and nothing spins."""
         if observable_class.needs_spin and system.inertia is None:
             raise NeedsError(f"observables.{name}", "spin")
-        if system.species and not _sums_contacts(observable_class):
+        if system.species and not (
+            issubclass(observable_class, FunctionObservable) or _sums_contacts(observable_class)
+        ):
             return SpeciesObservable(observable_class, system, arguments)
         return observable_class(system, **arguments)
 

@@ -377,5 +377,7 @@ def kernels(experiments: Iterable[Experiment], r: float) -> dict[Any, tuple[Scen
         scene = protocols.initial_scene(build(experiment, r, -1.0), experiment)
         effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
         key = effects, tuple(side is None for side in scene.box)
+        if sources := sources_of(scene.effects):
+            key += (sources,)
         scenes.setdefault(key, (scene, experiment))
     return scenes
