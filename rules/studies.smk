@@ -102,7 +102,7 @@ rule plot:
     log:
         "logs/figures/{folder}{plotted}.log",
     params:
-        code=code_of("show.figures.sweep", "show.style"),
+        code=code_of("show.figures.variables", "show.style"),
     message:
         "draw {wildcards.folder}{wildcards.plotted}"
     shell:

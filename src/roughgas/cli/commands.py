@@ -200,10 +200,14 @@ def trajectory(
     "roughgas show results/paper/vibrated.nc",
     "roughgas show results/paper/accuracy.nc",
     "roughgas show results/paper/sheared.nc --json",
+    "roughgas show results/paper/sheared.nc --of E_trans vertical_share",
 )
 def show(
     files: Annotated[list[str], Option("datasets", "FILE")],
     *,
+    of: Annotated[
+        Sequence[str], Option("variables of a reduced dataset, in place of R", "NAME")
+    ] = (),
     json: Annotated[
         bool, Option("print attributes and single numbers, a line of JSON for each file")
     ] = False,
@@ -212,11 +216,12 @@ def show(
 
     Print what a dataset holds: what was simulated, R with its error, theory, energies, cost, and
     how to make it again. It may be a point, a reduced dataset, a dataset of studies or a task of
-    one. 0.3565(30) is 0.3565 with a standard error of 0.0030.
+    one. 0.3565(30) is 0.3565 with a standard error of 0.0030. --of prints any variables of reduced
+    datasets over the sweep, such as the results of observables.
     """
     from roughgas.cli.show import print_summaries
 
-    print_summaries(files, json)
+    print_summaries(files, json, of)
 
 
 @command(
@@ -225,13 +230,17 @@ def show(
     "roughgas plot results/paper/sheared.nc -o my.png",
     "roughgas plot results/paper/sheared.nc --beta 0 1 --over r -o my.png my.pdf",
     "roughgas plot results/paper/vibrated.nc --over beta --r 0.9 -o bed.png",
+    "roughgas plot results/paper/vibrated.nc --of E_trans vertical_share -o energies.png",
 )
 def plot(
     input: Annotated[str, Option("a point, or a reduced dataset", "DATASET")],
     *,
     of: Annotated[
-        str | None, Option("what an observable of a point has found, in place of R(t)", "VARIABLE")
-    ] = None,
+        Sequence[str],
+        Option(
+            "variables to draw, of a point one (default: R and, of a sweep, the observed)", "NAME"
+        ),
+    ] = (),
     over: Annotated[
         str | None, Option("horizontal axis: r, beta, or the third axis (the default)", "AXIS")
     ] = None,
@@ -245,7 +254,9 @@ def plot(
     third axis of the sweep, else beta. Of many series an evenly spaced selection is drawn; --r and
     --beta choose. Without spin, the energy is drawn. Of a point, R(t) and both energies: the window
     in which R is measured is shaded, its mean, its 95 % interval and theory are lines. --of draws a
-    variable of an observable instead, such as g(r), with its error, a line for each species.
+    variable of an observable instead, such as g(r), with its error, a line for each species. Of a
+    sweep --of draws any variables with error bars, a row for each: over the axis, or, of a variable
+    such as a profile, along its coordinate. Without --of, R and the results of observables.
     """
     from roughgas.show import gallery
 
