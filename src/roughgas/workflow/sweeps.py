@@ -44,6 +44,7 @@ class Sweeps:
         self.kernel_kinds = functools.cache(self._kernel_kinds)
         self.collisions = functools.cache(self._collisions)
         self.codes_of_studies = functools.cache(self._codes_of_studies)
+        self.study_options = functools.cache(self._study_options)
 
     def _checked(
         self, scale: str, experiment: str
@@ -138,7 +139,7 @@ class Sweeps:
         self.configuration.use_names(experiment)
         return [code_in(folder, file) for folder, file in study_code.used_files(raw)]
 
-    def study_options(self, scale: str, experiment: str) -> list[str]:
+    def _study_options(self, scale: str, experiment: str) -> list[str]:
         """Return the options of jobs for the effects and observables of studies; [] without any."""
         raw = self.written(scale, experiment).raw
         self.configuration.use_names(experiment)
