@@ -7,7 +7,8 @@ line for each value of the axis. Other dimensions, such as species, make further
 `over` and `chosen` are as in roughgas.show.figures.sweep.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from roughgas.theory.prediction import equation_of
 
 MAX_ROWS, MAX_LINES = 5, 10
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
+LETTERS_PER_INCH = 11.5  # of the title
 
 
 def drawn_by_default(data: xr.Dataset) -> list[str]:
@@ -72,10 +74,11 @@ def draw(
     numeric, axis = sweep.with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections: list[Record] = [{layout.panels: value} if layout.panels else {} for value in panels]
-    width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
-    size = width + sweep.LEGEND_WIDTH, TITLE_HEIGHT + ROW_HEIGHT * len(names)
+    one_wide = WIDTH + sweep.LEGEND_WIDTH
+    width = one_wide if len(panels) == 1 else max(TWO_WIDE, 0.5 * TWO_WIDE * len(panels))
+    size = width, TITLE_HEIGHT + ROW_HEIGHT * len(names)
     figure = Figure(figsize=size, layout="constrained")
-    figure.get_layout_engine().set(rect=(0.0, 0.0, width / size[0], 1.0))
+    figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0))
     grid = figure.subplots(len(names), len(panels), sharey="row", squeeze=False)
     for row, name in zip(grid, names, strict=True):
         for axes, selection in zip(row, selections, strict=True):
@@ -90,8 +93,8 @@ def draw(
         legend.set_in_layout(False)  # beside the last column, whose width it leaves alone
     for axes, selection in zip(grid[0], selections, strict=True):
         panel.add_title(axes, [data], sweep.title_of_panel(data, selection))
-    message = _message(data, names, layout.over)
-    figure.suptitle(message, x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    message = wrap(_message(data, names, layout.over), int(width * LETTERS_PER_INCH))
+    figure.suptitle("\n".join(message), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     figure.align_ylabels()
     if not all(panel.trusted(data, name).all() for name in names):
         figure.legend(handles=[panel.key_of_trust()], loc="outside lower right")
@@ -173,7 +176,9 @@ def _draw_along(
     axes.set_xlabel(f"{label}{sweep.unit_suffix(data[coordinate])}")
 
 
-def _lines(row: xr.Dataset, name: str, along: str):
+def _lines(
+    row: xr.Dataset, name: str, along: str
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, str, LineStyle]]:
     """Yield values, errors and trust, (n,) each `along` a dimension, label and style of each line.
 
     The label names the other dimensions of the variable, as species; at most MAX_LINES are drawn.
