@@ -8,8 +8,10 @@ from study_code import EFFECTS, OBSERVABLES, ROOT, add_study
 
 from roughgas import config, effects, observables, register_observable
 from roughgas.base import InputError
+from roughgas.base.files import study_module
 from roughgas.config import study_code
 from roughgas.config.study_folders import write_effective
+from roughgas.effects.user_code import source_hash
 
 BUILT_IN = [*effects.EFFECTS], [*observables.OBSERVABLES]
 OTHERS = "experiments:\n  bed: {extends: vibrated, %s}\n"
@@ -149,16 +151,49 @@ def test_a_name_of_a_user_is_taken():
 
 
 def test_an_edit_is_read():
-    study = add_study()
-    settings = config.load_experiment("config.yaml", "mine.metal", "paper")
-    first = effects.REGISTERED["plasticity"]
-    assert settings.experiment("") and effects.REGISTERED["plasticity"] is first
+    def law():
+        """The class of the effect, and the hash of its sources, as an experiment finds them."""
+        config.load_experiment("config.yaml", "mine.metal", "paper").experiment("")
+        kind = effects.EFFECTS["plasticity"]
+        return kind, source_hash("plasticity", kind)
+
+    study, first = add_study(), law()
+    assert law() == first
     (study / "effects.py").write_text(EFFECTS.replace("else r\n", "else 0.5 * r\n"))
-    config.load_experiment("config.yaml", "mine.metal", "paper")
-    assert effects.REGISTERED["plasticity"].source_hash != first.source_hash
+    assert law()[1] != first[1]
     (study / "effects.py").write_text(EFFECTS)
+    assert law()[1] == first[1]
+
+
+def test_another_file_of_the_study_may_import_its_effects():
+    """They are legal in its experiments alone nevertheless."""
+    study = add_study()
+    (study / "judges.py").write_text("from .effects import Plasticity\n")
+    assert study_module(study, "judges").Plasticity(0.5).yield_speed == 0.5
+    assert "plasticity" not in effects.EFFECTS
     config.load_experiment("config.yaml", "mine.metal", "paper")
-    assert effects.REGISTERED["plasticity"].source_hash == first.source_hash
+    assert "plasticity" in effects.EFFECTS
+
+
+CLASS = """
+import roughgas
+from roughgas.observables import Observable
+
+
+class Fast(Observable):
+    def observe(self, frame):
+        return {}
+
+
+roughgas.register_observable("fast", Fast)
+"""
+
+
+def test_a_study_may_register_a_class_of_observables():
+    """As a user does."""
+    add_study(effects=None, observables=CLASS, config=OTHERS % "observables: {fast: {}}")
+    config.load_experiment("config.yaml", "mine.bed", "paper")
+    assert observables.OBSERVABLES["fast"].__name__ == "Fast"
 
 
 def test_the_configuration_may_change_them_and_extend_them():

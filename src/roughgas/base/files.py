@@ -20,6 +20,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from roughgas.base import InputError, __version__, as_input_errors
 from roughgas.base.text import without_comments
@@ -272,9 +273,19 @@ def study_module(folder: str | Path, name: str) -> types.ModuleType:
         return importlib.import_module(f"{package}.{name}")
 
 
+STUDY_PACKAGE = "roughgas_study_"
+"""Beginning of the names of packages whose modules are the files of a study."""
+
+
 def study_package(folder: str | Path) -> str:
     """Return the name of the package whose modules are the files of the study in `folder`."""
-    return "roughgas_study_" + re.sub(r"\W", "_", Path(folder).resolve().name)
+    return STUDY_PACKAGE + re.sub(r"\W", "_", Path(folder).resolve().name)
+
+
+def package_of_study(definition: Any) -> str:
+    """Return the package of the study that defines a class or a function; "" if none does."""
+    package = str(getattr(definition, "__module__", "")).partition(".")[0]
+    return package if package.startswith(STUDY_PACKAGE) else ""
 
 
 def is_imported(folder: str | Path) -> bool:

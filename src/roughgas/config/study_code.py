@@ -26,7 +26,6 @@ from roughgas.base.files import (
 # effects and observables are imported inside functions: few studies have these files
 
 if TYPE_CHECKING:
-    from roughgas.effects import Registration
     from roughgas.observables import Observable
 
 EFFECTS, OBSERVABLES = "effects", "observables"
@@ -37,7 +36,8 @@ class StudyCode(NamedTuple):
     """The effects and the observables of a study, by name."""
 
     source_hash: str
-    effects: "Mapping[str, Registration]"
+    effects: Mapping[str, tuple[type, str | None]]
+    """The class of each, and the name of the effect that it acts before."""
     observables: "Mapping[str, type[Observable]]"
 
 
@@ -61,7 +61,7 @@ def use(folders: Iterable[str | Path]) -> None:
     try:
         for path in paths:
             _in_use[path] = _current(path) or _load(path)
-            _register(path, _in_use[path])
+            _add(path, _in_use[path])
     except InputError:
         _forget()
         raise
@@ -131,39 +131,30 @@ def _source_hash(folder: Path) -> str:
 
 
 def _load(folder: Path) -> StudyCode:
-    """Import the code of a study anew, and return it; nothing of it remains registered."""
+    """Import the code of a study anew, and return it, unchecked."""
     forget_study(folder)
-    source_hash = _source_hash(folder)
-    effects = _effects(folder) if (folder / f"{EFFECTS}.py").exists() else {}
-    observables = {}
+    source_hash, package = _source_hash(folder), study_package(folder)
+    effects: dict[str, Any] = {}
+    if (folder / f"{EFFECTS}.py").exists():
+        from roughgas.effects import OF_STUDIES
+
+        OF_STUDIES.pop(package, None)
+        study_module(folder, EFFECTS)
+        effects = OF_STUDIES.get(package, {})
+    observables: dict[str, Any] = {}
     if (folder / f"{OBSERVABLES}.py").exists():
+        from roughgas.observables import OF_STUDIES as REGISTERED
         from roughgas.observables.plugin import study_observable
 
+        REGISTERED.pop(package, None)
         module, file = study_module(folder, OBSERVABLES), _name(folder, OBSERVABLES)
         observables = {
             name: study_observable(name, function, file, source_hash)
             for name, function in _public_functions(module)
         }
+        observables |= REGISTERED.get(package, {})
     _loaded[folder] = StudyCode(source_hash, effects, observables)
     return _loaded[folder]
-
-
-def _effects(folder: Path) -> "dict[str, Registration]":
-    """Import effects.py of a study, and return the effects that it registers, by name."""
-    from roughgas.effects import REGISTERED, forget_effect
-
-    users = set(REGISTERED)
-    try:
-        study_module(folder, EFFECTS)
-        package = study_package(folder)
-        return {
-            name: effect
-            for name, effect in REGISTERED.items()
-            if name not in users or effect.kind.__module__.startswith(f"{package}.")
-        }
-    finally:
-        for name in set(REGISTERED) - users:
-            forget_effect(name)
 
 
 def _public_functions(module: ModuleType) -> Iterator[tuple[str, Callable[..., Any]]]:
@@ -174,30 +165,31 @@ def _public_functions(module: ModuleType) -> Iterator[tuple[str, Callable[..., A
             yield name, function
 
 
-def _register(folder: Path, code: StudyCode) -> None:
-    """Register the effects and the observables of a study."""
+def _add(folder: Path, code: StudyCode) -> None:
+    """Add the effects and the observables of a study; raise InputError for an illegal one."""
     if code.effects:
-        from roughgas.effects import register_effect
+        from roughgas.effects import add_effect
 
         with as_input_errors(_name(folder, EFFECTS), "be legal"):
-            for name, effect in code.effects.items():
-                register_effect(name, effect.kind, effect.before)
+            for name, (kind, before) in code.effects.items():
+                add_effect(name, kind, before)
     if code.observables:
-        from roughgas.observables import register_observable
+        from roughgas.observables import add_observable
 
         with as_input_errors(_name(folder, OBSERVABLES), "be legal"):
             for name, kind in code.observables.items():
-                register_observable(name, kind)
+                add_observable(name, kind)
 
 
 def _forget() -> None:
     """Forget the effects and the observables of all studies in use."""
     for code in _in_use.values():
         if code.effects:
-            from roughgas.effects import REGISTERED, forget_effect
+            from roughgas.effects import EFFECTS as LEGAL
+            from roughgas.effects import forget_effect
 
-            for name, effect in code.effects.items():
-                if name in REGISTERED and REGISTERED[name].kind is effect.kind:
+            for name, (kind, _) in code.effects.items():
+                if LEGAL.get(name) is kind:
                     forget_effect(name)
         if code.observables:
             from roughgas.observables import OBSERVABLES as LEGAL_OBSERVABLES

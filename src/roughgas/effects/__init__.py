@@ -19,6 +19,7 @@ from typing import NamedTuple, cast
 
 from roughgas.base import InputError, NamedValues, short_repr
 from roughgas.base.fields import Schema, Settings, schema_of_kinds
+from roughgas.base.files import package_of_study
 from roughgas.effects.bath import Langevin
 from roughgas.effects.contacts import (
     ContactAverages,
@@ -105,41 +106,48 @@ del EFFECTS["species"]  # a separate key in settings
 _ORDER = [*Effects._fields]
 
 
-class Registration(NamedTuple):
-    """A registered effect: its class, the effect that it acts before, and a hash of its sources."""
-
-    kind: type
-    before: str | None
-    source_hash: str
+_HASHES: dict[str, str] = {}
+"""Hashes of the sources of added effects, by name."""
 
 
-REGISTERED: dict[str, Registration] = {}
-"""The effects that users and studies have registered, by name."""
+OF_STUDIES: dict[str, dict[str, tuple[type, str | None]]] = {}
+"""Effects that studies define, by the study's package and by name: arguments of `add_effect`."""
 
 
 def register_effect(name: str, kind: type, before: str | None = None) -> None:
     """Register a user's class `kind` as an effect of this name: see `roughgas.register_effect`.
 
+    An effect of a study is only noted, in OF_STUDIES: experiments of the study add it, and check it
+    then. Raises InputError as `add_effect`.
+    """
+    if package := package_of_study(kind):
+        OF_STUDIES.setdefault(package, {})[name] = kind, before
+    else:
+        add_effect(name, kind, before)
+
+
+def add_effect(name: str, kind: type, before: str | None = None) -> None:
+    """Add a user's class `kind` to the effects, under this name, until `forget_effect`.
+
     `before` is the name of an effect that acts after it. Raises InputError for an illegal name,
     class or order.
     """
-    redefined = name in REGISTERED and is_same_definition(EFFECTS[name], kind)
+    redefined = name in _HASHES and is_same_definition(EFFECTS[name], kind)
     check_name("effect", name, taken=name in _ORDER and not redefined)
     check_class(name, kind)
     digest = source_hash(name, kind)
     order = [effect for effect in _ORDER if effect != name]
     order.insert(_rank(name, kind, before, order), name)
     _ORDER[:] = order
-    REGISTERED[name] = Registration(kind, before, digest)
+    _HASHES[name] = digest
     _update_registry(EFFECTS | {name: kind})
 
 
 def forget_effect(name: str) -> None:
     """Remove a registered effect; raise InputError for any other name."""
-    if name not in REGISTERED:
-        registered = ", ".join(REGISTERED) or "(none)"
-        raise InputError("effect", short_repr(name), f"be one of {registered}")
-    del REGISTERED[name]
+    if name not in _HASHES:
+        raise InputError("effect", short_repr(name), f"be one of {', '.join(_HASHES) or '(none)'}")
+    del _HASHES[name]
     _ORDER.remove(name)
     _update_registry({effect: kind for effect, kind in EFFECTS.items() if effect != name})
 
@@ -178,11 +186,7 @@ def effects_tuple(effects: NamedValues) -> Effects:
     contains a digest of their sources: machine code is cached by the names of types.
     """
     present = {name: effect for name, effect in effects.items() if effect is not None}
-    registered = tuple(
-        (name, REGISTERED[name].source_hash)
-        for name in _ORDER
-        if name in REGISTERED.keys() & present
-    )
+    registered = tuple((name, _HASHES[name]) for name in _ORDER if name in _HASHES.keys() & present)
     if not registered:
         return Effects(**present)
     names = {*Effects._fields, *present}
