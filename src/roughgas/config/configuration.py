@@ -167,10 +167,11 @@ def studies_of(name: str, experiments: Mapping[str, RawSettings]) -> list[str]:
     `experiments` has experiments by name, as written, unchecked; none need be there.
     """
     chain: list[str] = []
-    while isinstance(name, str) and name not in chain:
-        chain.append(name)
-        settings = experiments.get(name)
-        name = settings.get("extends") if isinstance(settings, Mapping) else None
+    parent: Any = name
+    while isinstance(parent, str) and parent not in chain:
+        chain.append(parent)
+        settings: Any = experiments.get(parent)
+        parent = settings.get("extends") if isinstance(settings, Mapping) else None
     return list(dict.fromkeys(name.partition(".")[0] for name in chain if "." in name))
 
 

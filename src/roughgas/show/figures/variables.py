@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from roughgas.base import Record
 from roughgas.data.reduced import check_swept, observed_names, sweep_axes
@@ -77,8 +78,8 @@ def draw(
     one_wide = WIDTH + sweep.LEGEND_WIDTH
     width = one_wide if len(panels) == 1 else max(TWO_WIDE, 0.5 * TWO_WIDE * len(panels))
     size = width, TITLE_HEIGHT + ROW_HEIGHT * len(names)
-    figure = Figure(figsize=size, layout="constrained")
-    figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0))
+    beside_legends = 0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=beside_legends))
     grid = figure.subplots(len(names), len(panels), sharey="row", squeeze=False)
     for row, name in zip(grid, names, strict=True):
         for axes, selection in zip(row, selections, strict=True):
