@@ -14,6 +14,7 @@ from roughgas.base.files import study_module
 from roughgas.base.labels import grid_points
 from roughgas.cli import main
 from roughgas.config import study_code
+from roughgas.data.netcdf import unit_of
 from roughgas.scene import build
 from roughgas.simulation.run_points import checkpoint_owner
 
@@ -34,7 +35,7 @@ def test_results_are_described_and_have_errors(study):
     point = roughgas.simulate("mine.observed", **POINT)
     assert point.fast.attrs["long_name"] == "share of fast particles"
     assert point.squares.dims == ("side",) and point.side.values.tolist() == ["x", "y"]
-    assert point.squares.attrs["units"] == "a^2 T^-2"
+    assert unit_of(point.squares.attrs) == "a^2 T^-2"
     assert float(point.fast_stderr) > 0.0 and (point.squares_stderr > 0.0).all()
     assert "--studies studies/mine" in point.attrs["command"]
 
@@ -85,7 +86,8 @@ def test_in_a_mixture_a_function_sees_all_particles(study):
         ("None", "fast(): observe.fast = NoneType: must return a number, an array of numbers"),
         ("'much'", "fast(): observe.fast = str: must return a number"),
         ("[frame.time] * (1 + int(frame.time) % 7)", "fast(): observe.fast: shapes = {'fast': ("),
-        ("{'R': 1.0}", "fast(): variable = R: must have a name that points do not have"),
+        ("{'R': 1.0}", "fast(): variable = R: must have a name that datasets do not have"),
+        ("{'n_seeds': 1.0}", "fast(): variable = n_seeds: must have a name that datasets do not"),
     ],
 )
 def test_a_function_that_fails_ends_the_run_with_one_line(study, capsys, body, line):
@@ -135,7 +137,7 @@ def test_a_checkpoint_belongs_to_the_text_of_the_file(study):
 
 
 def test_a_variable_of_reduced_datasets_is_refused(study):
-    named = "\n\ndef fast(frame):\n    return {'n_seeds': 1.0}\n"
+    named = "\n\ndef fast(frame):\n    return {'measured_for': 1.0}\n"
     (study / "observables.py").write_text(OBSERVABLES + named)
-    with pytest.raises(InputError, match="variable of fast = n_seeds: must have a name that no"):
+    with pytest.raises(InputError, match="variable of fast = measured_for: must have a name that"):
         roughgas.simulate("mine.observed", **POINT | {"seed": [1, 2]})

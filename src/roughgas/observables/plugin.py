@@ -19,6 +19,7 @@ import numpy as np
 
 from roughgas.base import InputError, NamedValues, as_input_errors
 from roughgas.base.fields import Settings, whole
+from roughgas.data.netcdf import FILE_TYPES
 from roughgas.data.variables import POINT, Variable
 from roughgas.observables.averages import NamedArrays
 from roughgas.observables.frames import Frame, FrameSeries, System
@@ -306,6 +307,10 @@ class FunctionObservable(Observable):
                 self.coordinates[dim] = np.asarray(coordinate)
 
 
+RESERVED = {*POINT, *(name for _, names in FILE_TYPES.values() for name in names)}
+"""Names of variables of points, and of those by which the type of a file is known."""
+
+
 class StudyObservable(FunctionObservable):
     """An observable made of a function in observables.py of a study: see `study_observable`."""
 
@@ -321,12 +326,12 @@ class StudyObservable(FunctionObservable):
     def observe(self, frame: Frame) -> NamedArrays:
         """Return the result of the function; raise InputError for any error of it.
 
-        A variable that points have already is refused at the first observation.
+        A variable with a name in RESERVED is refused at the first observation.
         """
         with as_input_errors(f"{self.file}: {type(self).__name__}()", "observe this frame"):
             values = super().observe(frame)
-            for name in sorted(self.variables.keys() & POINT.keys()):
-                raise InputError("variable", name, "have a name that points do not have")
+            for name in sorted(self.variables.keys() & RESERVED):
+                raise InputError("variable", name, "have a name that datasets do not have")
         return values
 
 
