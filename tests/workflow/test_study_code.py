@@ -92,7 +92,7 @@ def test_the_workflow_makes_points_and_figures_and_reruns_those_of_an_edited_fil
         assert data.yield_speed.values.tolist() == [0.5, 1.0]
     assert "Nothing to be done" in made.succeed("-n", "--", *TARGETS)
     jobs = {
-        "observables": {"seeds": 2, "reduce": 1, "plot": 1},
+        "observables": {"seeds": 1, "reduce": 1, "plot": 1},
         "effects": {"compile_kernel": 1, "seeds": 2, "point": 1, "reduce": 1, "plot": 1},
     }
     for file, expected in jobs.items():
