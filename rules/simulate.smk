@@ -22,11 +22,12 @@ rule compile_kernel:
         code=from_wildcards(sweeps.kernel_code),
         kinds=from_wildcards(sweeps.kernel_kinds_of_path),
         settings=unrecorded(sweeps.kernel_settings),  # only `kinds` affect the kernel
+        studies=unrecorded(sweeps.study_options),
     message:
         "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
     shell:
         "python -P -m roughgas.steps compile_kernels {wildcards.experiment:q} --r={wildcards.r:q}"
-        " --settings {params.settings:q} > {log:q} 2>&1"
+        " --settings {params.settings:q} {params.studies:q} > {log:q} 2>&1"
 
 
 for block in sweeps.blocks():
@@ -51,13 +52,14 @@ for block in sweeps.blocks():
         params:
             code=from_wildcards(sweeps.point_code),
             settings=from_wildcards(sweeps.point_settings),
+            studies=unrecorded(sweeps.study_options),
             # not recorded: a point is up to date regardless of the job that made it
             points=lambda wildcards, output: points_of_job(output),
         message:
             "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
         shell:
             "roughgas run {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
-            " {params.points:q} --settings {params.settings:q} --output {output:q}"
+            " {params.points:q} --settings {params.settings:q} {params.studies:q} --output {output:q}"
             " > {log:q} 2>&1"
 
 

@@ -18,11 +18,13 @@ rule task:
         settings=from_wildcards(tasks.settings),
         folder=unrecorded(tasks.folder),
         module=unrecorded(tasks.module),
+        studies=unrecorded(tasks.study_options),
     message:
         "study {wildcards.task_folder}: {wildcards.task}"
     shell:
         "python -P -m roughgas.steps task {params.folder:q} {wildcards.task:q} {params.module:q}"
-        " --scale {wildcards.scale:q} --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
+        " --scale {wildcards.scale:q} --settings {params.settings:q} {params.studies:q} --output {output:q}"
+        " > {log:q} 2>&1"
 
 
 rule combine:
@@ -100,7 +102,7 @@ rule plot:
     log:
         "logs/figures/{folder}{plotted}.log",
     params:
-        code=code_of("show.figures.sweep", "show.style"),
+        code=code_of("show.figures.variables", "show.style"),
     message:
         "draw {wildcards.folder}{wildcards.plotted}"
     shell:
@@ -120,10 +122,11 @@ rule movie:
         code=from_wildcards(drawings.movie_code),
         settings=from_wildcards(drawings.movie_settings),
         options=from_wildcards(drawings.movie_options),
+        studies=unrecorded(drawings.movie_studies),
     message:
         "show {wildcards.folder}{wildcards.movie} as it moves"
     shell:
-        "roughgas movie {params.options:q} --fps=20 --settings {params.settings:q}"
+        "roughgas movie {params.options:q} --fps=20 --settings {params.settings:q} {params.studies:q}"
         " --output {output:q} > {log:q} 2>&1"
 
 

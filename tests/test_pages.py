@@ -25,7 +25,7 @@ from roughgas.base import InputError
 from roughgas.base.labels import grid_points
 from roughgas.base.reading import read_yaml
 from roughgas.claims import verdicts
-from roughgas.config import WrittenExperiment, json_schema
+from roughgas.config import WrittenExperiment, json_schema, study_code
 from roughgas.data.point import as_dataset, read_point
 from roughgas.effects import EFFECTS as EFFECT_CLASSES
 from roughgas.simulation import protocols
@@ -112,9 +112,12 @@ def test_the_schema_for_editors_is_of_the_structs_and_takes_what_the_code_takes(
         configuration["experiments"]["cooling"]["effects"]["spin"]["inertia"] = "half"
         (error,) = validator.iter_errors(configuration)
         assert [*error.absolute_path][-2:] == ["spin", "inertia"]
-    folder = Draft202012Validator({"$ref": "#/$defs/experiments", "$defs": schema["$defs"]})
     for path in sorted(ROOT.glob("studies/*/config.yaml")):
+        study_code.use([path.parent])  # the schema has its effects and observables, too
+        definitions = {"$ref": "#/$defs/experiments", "$defs": json_schema.schema()["$defs"]}
+        folder = Draft202012Validator(definitions)
         assert not [*folder.iter_errors(read_yaml(path).get("experiments", {}))], path
+    study_code.use(())
 
 
 def check_result(series):

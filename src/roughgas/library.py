@@ -232,7 +232,7 @@ def simulate(
     changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
     changes |= dict(schedule=schedule, spin_temperature=spin_temperature, keep_state=keep_state)
 
-    from roughgas.config import experiment_of
+    from roughgas.config import experiment_of, study_code
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.run_points import simulate_points
@@ -256,7 +256,8 @@ def simulate(
         named = {key: chosen for key, chosen in observables.items() if not callable(chosen)}
         changes["observables"] = {key: dict(chosen or {}) for key, chosen in named.items()}
     name, scale, settings = experiment_of(experiment, changes, scale, config)
-    command_options = ["--from", "start.nc"] if states else []
+    command_options = study_code.options(settings.raw)
+    command_options += ["--from", "start.nc"] if states else []
     outputs = ["point.nc"] * len(points_of_grid)
     results = simulate_points(
         name,
@@ -347,7 +348,7 @@ def trajectory(
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
     changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
     changes["schedule"] = schedule
-    from roughgas.config import experiment_of
+    from roughgas.config import experiment_of, study_code
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
     from roughgas.simulation.films import film
@@ -365,7 +366,8 @@ def trajectory(
     name, scale, settings = experiment_of(experiment, changes, scale, config)
     scene = build(settings, grid_point.r, grid_point.beta)
     take = chosen_frames(settings, scene, start, length, frames, times, states)
-    command_options = (["--from", "start.nc"] if states else []) + take.options()
+    command_options = study_code.options(settings.raw)
+    command_options += (["--from", "start.nc"] if states else []) + take.options()
     noise = states[0].noise if states else SEED
     attributes = provenance(
         name, settings, grid_point.labels, scale, "bed.xyz", "trajectory", command_options, noise

@@ -18,10 +18,15 @@ from roughgas.base.labels import restitution
 from roughgas.cli.parser import Function, Parser, add_arguments
 
 
-def compile_kernels(experiment: str, *, settings: str, r: str) -> None:
-    """Compile the kernels of an experiment, in all its variants, at some r."""
+def compile_kernels(experiment: str, *, settings: str, r: str, studies: Sequence[str] = ()) -> None:
+    """Compile the kernels of an experiment, in all its variants, at some r.
+
+    `studies` are the folders of studies whose effects it has.
+    """
+    from roughgas.config import study_code
     from roughgas.simulation.point import compile_kernels
 
+    study_code.use(studies)
     written = config.WrittenExperiment.from_text(settings, "--settings")
     written.check_third_axis("--settings")
     variants = written.every_variant(experiment).values()

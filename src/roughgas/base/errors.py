@@ -1,6 +1,7 @@
 """Errors of input and of runs, with messages of one line."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 MAX_QUOTED_LENGTH = 60  # characters of a value in a message
@@ -40,6 +41,20 @@ class NeedsError(InputError):
     def __str__(self) -> str:
         """Return the error as one line."""
         return f"{self.key} needs {self.lacking_setting}"
+
+
+@contextmanager
+def as_input_errors(source: str, legal: str) -> Iterator[None]:
+    """Turn any exception of a user's code into an InputError that names its `source`.
+
+    `legal` completes "it must ..."; an InputError keeps its value and its legal values.
+    """
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{source}: {error.key}", error.value, error.legal) from error
+    except (Exception, SystemExit) as error:
+        raise InputError(source, on_one_line(f"{type(error).__name__}: {error}"), legal) from error
 
 
 def short_repr(value: object) -> str:

@@ -20,8 +20,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
-from roughgas.base import InputError, __version__
+from roughgas.base import InputError, __version__, as_input_errors
 from roughgas.base.text import without_comments
 
 
@@ -180,10 +181,8 @@ def _python(path: Path) -> Iterator[None]:
     name = name_in_study(path)
     if not path.exists():
         raise InputError(name, "(nothing)", "be there for this")
-    try:
+    with as_input_errors(name, "be Python"):
         yield
-    except Exception as error:
-        raise InputError(name, f"{type(error).__name__}: {error}", "be Python") from error
 
 
 def _siblings(tree: ast.Module) -> Iterator[str]:
@@ -265,15 +264,42 @@ def study_module(folder: str | Path, name: str) -> types.ModuleType:
     It may import other modules of the folder. Raises InputError for a missing file, or a file that
     is no Python.
     """
-    folder = Path(folder).resolve()
-    package = "roughgas_study_" + re.sub(r"\W", "_", folder.name)
-    if getattr(sys.modules.get(package), "__path__", None) != [str(folder)]:
-        for stale in [loaded for loaded in sys.modules if loaded.partition(".")[0] == package]:
-            del sys.modules[stale]
+    folder, package = Path(folder).resolve(), study_package(folder)
+    if not is_imported(folder):
+        forget_study(folder)
         sys.modules[package] = types.ModuleType(package)
         sys.modules[package].__path__ = [str(folder)]
     with _python(folder / f"{name}.py"):
         return importlib.import_module(f"{package}.{name}")
+
+
+STUDY_PACKAGE = "roughgas_study_"
+"""Beginning of the names of packages whose modules are the files of a study."""
+
+
+def study_package(folder: str | Path) -> str:
+    """Return the name of the package whose modules are the files of the study in `folder`."""
+    return STUDY_PACKAGE + re.sub(r"\W", "_", Path(folder).resolve().name)
+
+
+def package_of_study(definition: Any) -> str:
+    """Return the package of the study that defines a class or a function; "" if none does."""
+    package = str(getattr(definition, "__module__", "")).partition(".")[0]
+    return package if package.startswith(STUDY_PACKAGE) else ""
+
+
+def is_imported(folder: str | Path) -> bool:
+    """Return whether the package of a study is the study in this `folder`, not its namesake."""
+    package = sys.modules.get(study_package(folder))
+    return getattr(package, "__path__", None) == [str(Path(folder).resolve())]
+
+
+def forget_study(folder: str | Path) -> None:
+    """Forget the modules of the study in `folder`, so that they are imported anew."""
+    package = study_package(folder)
+    for name in [loaded for loaded in sys.modules if loaded.partition(".")[0] == package]:
+        del sys.modules[name]
+    importlib.invalidate_caches()
 
 
 def readme(folder: str | Path) -> str:

@@ -20,6 +20,8 @@ Configuration = Annotated[
     str | Path, Option("the configuration (default: config.yaml here, or roughgas's own)", "FILE")
 ]
 Settings = Annotated[str | None, Option("the settings, in place of --config", "JSON")]
+STUDIES_HELP = "folders of studies whose effects and observables --settings name"
+Studies = Annotated[Sequence[str], Option(STUDIES_HELP, "FOLDER")]
 NAME_HELP = "its name in the configuration, or that of a variant: EXPERIMENT/VARIANT"
 Name = Annotated[str, Option(NAME_HELP, "EXPERIMENT", completer=completers.experiments)]
 PATTERN_HELP = "a pattern of the shell's, in quotes, that names match"
@@ -78,6 +80,7 @@ def run(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Restitutions,
     beta: Roughnesses,
     seed: Seeds = None,
@@ -101,7 +104,7 @@ def run(
     from roughgas.cli.run import Selection, write_points
 
     points = experiment, scale, config, settings, r, beta, seed
-    selection = Selection(*points, changes, observe, keep_state)
+    selection = Selection(*points, changes, observe, keep_state, studies)
     write_points(selection, start_from, reseed, output, json)
 
 
@@ -115,6 +118,7 @@ def movie(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Restitutions,
     beta: Roughnesses,
     seed: Seeds = None,
@@ -141,7 +145,8 @@ def movie(
     from roughgas.cli.excerpts import Excerpt, write_movies
     from roughgas.cli.run import Selection
 
-    selection = Selection(experiment, scale, config, settings, r, beta, seed, changes)
+    points = experiment, scale, config, settings, r, beta, seed
+    selection = Selection(*points, changes, studies=studies)
     write_movies(selection, Excerpt(start, length, frames), fps, colour, output)
 
 
@@ -156,6 +161,7 @@ def trajectory(
     scale: Scale = CONFIG_DEFAULT,
     config: Configuration = CONFIG_DEFAULT,
     settings: Settings = None,
+    studies: Studies = (),
     r: Annotated[str, Option(RESTITUTION_HELP)],
     beta: Annotated[str, Option(ROUGHNESS_HELP)],
     seed: Annotated[str | None, Option("seed of the random generator (default: 1)")] = None,
@@ -183,7 +189,8 @@ def trajectory(
     from roughgas.cli.excerpts import Excerpt, write_trajectory
     from roughgas.cli.run import Selection
 
-    selection = Selection(experiment, scale, config, settings, r, beta, seed, changes)
+    points = experiment, scale, config, settings, r, beta, seed
+    selection = Selection(*points, changes, studies=studies)
     excerpt = Excerpt(start, length, frames, times)
     write_trajectory(selection, excerpt, start_from, reseed, double, output)
 
@@ -193,10 +200,14 @@ def trajectory(
     "roughgas show results/paper/vibrated.nc",
     "roughgas show results/paper/accuracy.nc",
     "roughgas show results/paper/sheared.nc --json",
+    "roughgas show results/paper/sheared.nc --of E_trans vertical_share",
 )
 def show(
     files: Annotated[list[str], Option("datasets", "FILE")],
     *,
+    of: Annotated[
+        Sequence[str], Option("variables of a reduced dataset, in place of R", "NAME")
+    ] = (),
     json: Annotated[
         bool, Option("print attributes and single numbers, a line of JSON for each file")
     ] = False,
@@ -205,11 +216,12 @@ def show(
 
     Print what a dataset holds: what was simulated, R with its error, theory, energies, cost, and
     how to make it again. It may be a point, a reduced dataset, a dataset of studies or a task of
-    one. 0.3565(30) is 0.3565 with a standard error of 0.0030.
+    one. 0.3565(30) is 0.3565 with a standard error of 0.0030. --of prints any variables of reduced
+    datasets over the sweep, such as the results of observables.
     """
     from roughgas.cli.show import print_summaries
 
-    print_summaries(files, json)
+    print_summaries(files, json, of)
 
 
 @command(
@@ -218,13 +230,17 @@ def show(
     "roughgas plot results/paper/sheared.nc -o my.png",
     "roughgas plot results/paper/sheared.nc --beta 0 1 --over r -o my.png my.pdf",
     "roughgas plot results/paper/vibrated.nc --over beta --r 0.9 -o bed.png",
+    "roughgas plot results/paper/vibrated.nc --of E_trans vertical_share -o energies.png",
 )
 def plot(
     input: Annotated[str, Option("a point, or a reduced dataset", "DATASET")],
     *,
     of: Annotated[
-        str | None, Option("what an observable of a point has found, in place of R(t)", "VARIABLE")
-    ] = None,
+        Sequence[str],
+        Option(
+            "variables to draw, of a point one (default: R and, of a sweep, the observed)", "NAME"
+        ),
+    ] = (),
     over: Annotated[
         str | None, Option("horizontal axis: r, beta, or the third axis (the default)", "AXIS")
     ] = None,
@@ -238,7 +254,9 @@ def plot(
     third axis of the sweep, else beta. Of many series an evenly spaced selection is drawn; --r and
     --beta choose. Without spin, the energy is drawn. Of a point, R(t) and both energies: the window
     in which R is measured is shaded, its mean, its 95 % interval and theory are lines. --of draws a
-    variable of an observable instead, such as g(r), with its error, a line for each species.
+    variable of an observable instead, such as g(r), with its error, a line for each species. Of a
+    sweep --of draws any variables with error bars, a row for each: over the axis, or, of a variable
+    such as a profile, along its coordinate. Without --of, R and the results of observables.
     """
     from roughgas.show import gallery
 

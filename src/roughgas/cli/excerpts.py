@@ -10,6 +10,7 @@ from roughgas.base import InputError, Interval
 from roughgas.base.labels import GridPoint
 from roughgas.cli.run import Selection, initial_in, points_of
 from roughgas.cli.values import number, whole_number
+from roughgas.config import study_code
 from roughgas.data.trajectory import check_format, growing_trajectory
 from roughgas.scene import Scene, build
 from roughgas.simulation.checkpoint import checkpoint_path
@@ -66,7 +67,15 @@ def write_trajectory(
     name, (coordinates,), experiment = points_of(selection, seed)
     scene = build(experiment, coordinates.r, coordinates.beta)
     take = chosen_take(excerpt, experiment, scene, initial)
-    attributes = provenance(name, experiment, coordinates.labels, selection.scale, outputs[0])
+    extra_options = study_code.options(experiment.raw)
+    attributes = provenance(
+        name,
+        experiment,
+        coordinates.labels,
+        selection.scale,
+        outputs[0],
+        extra_arguments=extra_options,
+    )
     checkpoint, written = checkpoint_path(outputs[0]), 0
     try:
         with ExitStack() as files:

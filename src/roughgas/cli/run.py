@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas import config
-from roughgas.base import InputError, as_json
+from roughgas.base import InputError, NeedsError, as_json
 from roughgas.base.fields import RawSettings
 from roughgas.base.labels import (
     SPECIES_PREFIX,
@@ -25,6 +25,7 @@ from roughgas.base.labels import (
     species_settings,
 )
 from roughgas.cli.values import check_outputs, labels
+from roughgas.config import study_code
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import protocols
 from roughgas.simulation.checkpoint import checkpoint_path
@@ -63,6 +64,7 @@ class Selection(NamedTuple):
     changes: Sequence[str] = ()
     observe: Sequence[str] = ()
     keep_state: bool = False
+    studies: Sequence[str] = ()  # folders of studies whose code `settings` need
 
 
 def write_points(
@@ -89,12 +91,13 @@ def write_points(
     if output is None:
         inputs = [selection.config, *([start_from] if start_from else [])]
         check_outputs(paths, inputs, "POINT")
-    start_options = ["--from", start_from] if start_from and initial else []
+    extra_options = study_code.options(experiment.raw)
+    extra_options += ["--from", start_from] if start_from and initial else []
     arguments = name, experiment, selected, selection.scale, paths, initial
     checkpoints = [*map(checkpoint_path, paths)]
     finished = FinishedPoints(paths) if len(paths) > 1 else None
     simulated = simulate_points(
-        *arguments, extra_arguments=start_options, checkpoints=checkpoints, finished=finished
+        *arguments, extra_arguments=extra_options, checkpoints=checkpoints, finished=finished
     )
     write = write_point if finished is None else finished.write
     with nullcontext() if finished is None else finished.advising():
@@ -161,10 +164,13 @@ def _experiment(selection: Selection) -> Experiment[Any]:
     """Return the settings of the selected experiment, with the changes of --set, --observe and
     --keep-state. Raises InputError if they are illegal."""
     if selection.settings is None:
+        if selection.studies:
+            raise NeedsError("--studies", "--settings")
         written = config.load_experiment(selection.config, selection.experiment, selection.scale)
         key = selection.experiment
     else:
         key = "--settings"
+        study_code.use(selection.studies)
         written = config.WrittenExperiment.from_text(selection.settings, key)
     written.check_has_points(selection.experiment)
     observables: dict[str, RawSettings] = {name: {} for name in selection.observe or ()}

@@ -6,8 +6,9 @@ the roughness. A row of a table is a list of texts, one for each column.
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,13 @@ from roughgas.config.study_folders import folders
 from roughgas.config.written_study import WrittenStudy
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
-from roughgas.data.reduced import STEADY_SHARE, particles_of
+from roughgas.data.reduced import (
+    STEADY_SHARE,
+    check_swept,
+    observed_names,
+    particles_of,
+    sweep_axes,
+)
 from roughgas.data.variables import TRUSTED_SUFFIX, third_axis
 from roughgas.effects.species import packing
 from roughgas.results.tables import rows as rows_of
@@ -75,28 +82,45 @@ STEADY_NOTES = {
 }
 
 
-def print_summaries(paths: Iterable[str | Path], json: bool) -> None:
+def print_summaries(paths: Iterable[str | Path], json: bool, of: Sequence[str] = ()) -> None:
     """Print the summary of each dataset, separated by empty lines; with `json`, its attributes and
     scalar variables as a line of JSON.
 
-    Raises InputError for files of other programs, and OSError.
+    `of` names variables of reduced datasets, which are printed in its place. Raises InputError for
+    files of other programs and unknown variables, and OSError.
     """
     for number, path in enumerate(paths):
         if json:
             kind, data = _read(path)
             attributes = {"attributes": data.attrs} if hasattr(data, "attrs") else {}
             record = {"file": path, "kind": kind} | attributes
-            print(as_json(record | SUMMARIES[kind][1](data), indent=None))
+            print(as_json(record | _summaries(path, kind, of)[1](data), indent=None))
         else:
-            print("\n" * (number > 0) + summary(path))
+            print("\n" * (number > 0) + summary(path, of))
 
 
-def summary(path: str | Path) -> str:
-    """Return the summary of the dataset at `path` as text. Raises InputError for files of other
-    programs."""
+def summary(path: str | Path, of: Sequence[str] = ()) -> str:
+    """Return the summary of the dataset at `path`, or of its variables `of`, as text.
+
+    Raises InputError for files of other programs and unknown variables.
+    """
     kind, data = _read(path)
-    lines = f"{path}: {kind}\n\n{SUMMARIES[kind][0](data)}".split("\n")
+    lines = f"{path}: {kind}\n\n{_summaries(path, kind, of)[0](data)}".split("\n")
     return "\n".join(map(on_one_line, lines))
+
+
+def _summaries(
+    path: str | Path, kind: str, of: Sequence[str]
+) -> tuple[Callable[[Any], str], Callable[[Any], NamedValues]]:
+    """Return the functions that summarise a kind of file, or its variables `of`: see SUMMARIES.
+
+    Raises InputError, with the `path`, for variables of anything but a reduced dataset.
+    """
+    if not of:
+        return SUMMARIES[kind]
+    if kind != "reduced dataset":
+        raise InputError("dataset", path, "be a reduced one for --of")
+    return partial(_variables_text, names=of), partial(_variables_record, names=of)
 
 
 def _read(path: str | Path) -> tuple[str, Any]:
@@ -171,7 +195,10 @@ def _settings_rows(attributes: Attributes) -> Iterator[list[str]]:
     yield ["point", point]
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     has_volume = "open" not in experiment["box"]
-    packing_text = f", packing {packing(scene_settings(experiment)):.3g}" if has_volume else ""
+    packing_text = ""
+    if has_volume:  # effects change none, and may be of a study that is not here
+        scene = scene_settings({**experiment, "effects": {}})
+        packing_text = f", packing {packing(scene):.3g}"
     shape = SHAPES[len(experiment["box"])]
     yield ["gas", f"{experiment['particles']} {shape}, box {box} a{packing_text}"]
     if layer := experiment.get("layer"):
@@ -313,10 +340,61 @@ def _reduced_text(data: Dataset) -> str:
         notes += (
             f"{wide_note(data)}\nTheory: {equation_of(attributes).name}; residual: R minus theory."
         )
+    if names := observed_names(data):
+        notes += f"\nObserved: {_names_text(names)}; --of prints them."
     if "R_collisional" in data:
         average_note = describe_collisional_average(attributes, data)
         notes += f"\nR is averaged over time, R_collisional over collisions, {average_note}."
     return f"{columns(header)}\n\n{columns(table, numbers=True)}\n\n{notes}"
+
+
+def _variables_text(data: Dataset, names: Sequence[str]) -> str:
+    """Return tables of the variables `names` of a reduced dataset over its sweep, as text.
+
+    Variables with the same further dimensions, such as the height of a profile, share a table.
+    """
+    tables: dict[tuple[str, ...], list[str]] = {}
+    for name in names:
+        check_swept(data, name)
+        dims = tuple(str(dim) for dim in data[name].dims if dim not in sweep_axes(data))
+        tables.setdefault(dims, []).append(name)
+    header = [["experiment", f"{data.attrs['experiment']}, scale {data.attrs['scale']}"]]
+    for name in names:
+        unit = unit_of(data[name].attrs)
+        meaning = data[name].attrs.get("long_name", name)
+        header.append([name, meaning + (f", in {unit}" if unit not in ("", "1") else "")])
+    parts = [columns(header), *(_variable_table(data, *table) for table in tables.items())]
+    note = f"{DOUBT_MARK}: the error is not trusted, or not known to be right"
+    return "\n\n".join([*parts, note] if any(DOUBT_MARK in part for part in parts) else parts)
+
+
+def _variable_table(data: Dataset, dims: Sequence[str], names: Sequence[str]) -> str:
+    """Return a table of variables over the sweep and the dimensions `dims`, which all have."""
+    axes = [*sweep_axes(data), *dims]
+    coordinates = [data[axis].values.tolist() for axis in axes]
+    rows = [[*axes, *names]]
+    for index in np.ndindex(*map(len, coordinates)):
+        element = data.isel(dict(zip(axes, index, strict=True)))
+        if int(element.n_seeds):
+            position = [values[k] for values, k in zip(coordinates, index, strict=True)]
+            cells = [value if isinstance(value, str) else f"{value:g}" for value in position]
+            rows.append([*cells, *(_estimate(element, name) for name in names)])
+    return columns(rows, numbers=True)
+
+
+def _variables_record(data: Dataset, names: Sequence[str]) -> NamedValues:
+    """Return the variables `names` at each point of a reduced dataset, with their errors, as a list
+    under `points`; values of variables with further dimensions are nested lists."""
+    for name in names:
+        check_swept(data, name)
+    axes = sweep_axes(data)
+    shown = [key for name in names for key in (name, f"{name}_stderr") if key in data]
+    points = []
+    for index in np.ndindex(*(data.sizes[axis] for axis in axes)):
+        point = data.isel(dict(zip(axes, index, strict=True)))
+        if int(point.n_seeds):
+            points.append({key: point[key].values.tolist() for key in (*axes, *shown)})
+    return {"points": points}
 
 
 def _result_cells(row: Record) -> list[str]:
@@ -541,10 +619,11 @@ def _table_function(study: str) -> Callable[[Dataset], str]:
 def _study_of_module(module: str) -> WrittenStudy | None:
     """Return the study whose tasks the module named `module` runs; None if no study has the
     module."""
-    for name, folder in folders(config.active_config_path()).items():
+    folders_by_name = folders(config.active_config_path())
+    for name, folder in folders_by_name.items():
         if (folder / f"{module}.py").exists():
             with suppress(InputError, OSError):  # skips a broken study
-                study = WrittenStudy(name, folder)
+                study = WrittenStudy(name, folder, folders_by_name)
                 if module in study.modules:
                     return study
     return None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.base import InputError
 from roughgas.base.fields import RawSettings
+from roughgas.config import study_code
 from roughgas.config.configuration import (
     ACCURACY,
     PAPER,
@@ -67,6 +68,7 @@ def experiment_of(
     base = WrittenExperiment({})
     if name is None:
         scale = scale or PAPER
+        study_code.use(())
     else:
         path = path or SHIPPED
         scale = scale or default_scale(path)

@@ -13,6 +13,7 @@ from typing import Any
 from roughgas.base import InputError, check_one_of, merged, short_repr, sorted_json
 from roughgas.base.fields import OwnSettings, RawSettings
 from roughgas.base.reading import read_yaml
+from roughgas.config import study_code
 from roughgas.config.packaged import STUDIES_OF_ACCURACY
 from roughgas.config.shaken_layer import LAYER
 from roughgas.config.study import Study
@@ -53,20 +54,24 @@ class Configuration:
     studies: Mapping[str, Study] = field(default_factory=dict)
     refused: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
     """Arguments of the InputError of each broken study."""
+    folders: Mapping[str, str] = field(default_factory=dict)
+    """Folders of studies by name, where experiments find their effects and observables."""
 
     @property
     def text(self) -> str:
         """The complete configuration, with its studies but without its source, as JSON."""
-        return sorted_json({key: value for key, value in asdict(self).items() if key != "source"})
+        files = {"source", "folders"}
+        return sorted_json({key: value for key, value in asdict(self).items() if key not in files})
 
     def experiment(self, name: str, scale: str) -> WrittenExperiment:
         """Return the experiment `name` at a scale, merged with the experiments that it extends.
 
         `name` may also name a variant, EXPERIMENT/PARAMETERLABEL, even of a value outside the
         sweep. The extended experiments are at the same scale. Numbers in its sweep are spelled as
-        in paths.
+        in paths. The effects and observables of its studies are then legal, and no other study's.
         """
         base, slash, _ = name.partition("/")
+        self.use_names(base)
         written = self._merged(base, scale).spelled()
         if not slash:
             return written
@@ -75,6 +80,18 @@ class Configuration:
         variant = written.variant(name)
         PointForm.check(variant.raw, name)
         return variant
+
+    def use_names(self, name: str) -> None:
+        """Make the effects and observables of the studies of an experiment legal, and no others."""
+        study_code.use(self.code_folders(name))
+
+    def code_folders(self, name: str) -> list[str]:
+        """Return the folders of the studies whose effects and observables an experiment may name.
+
+        These are its study, and the studies of experiments that it extends.
+        """
+        studies = studies_of(name.partition("/")[0], self.experiments)
+        return [self.folders[study] for study in studies if study in self.folders]
 
     def _merged(self, name: str, scale: str) -> WrittenExperiment:
         """Return an experiment at a scale, merged with those it extends, labels as in files."""
@@ -142,6 +159,20 @@ class Configuration:
                 if "." not in name or self.complete:
                     self.check_experiment(name, scale)
         return self
+
+
+def studies_of(name: str, experiments: Mapping[str, RawSettings]) -> list[str]:
+    """Return the studies of an experiment `name` and of the experiments that it extends.
+
+    `experiments` has experiments by name, as written, unchecked; none need be there.
+    """
+    chain: list[str] = []
+    parent: Any = name
+    while isinstance(parent, str) and parent not in chain:
+        chain.append(parent)
+        settings: Any = experiments.get(parent)
+        parent = settings.get("extends") if isinstance(settings, Mapping) else None
+    return list(dict.fromkeys(name.partition(".")[0] for name in chain if "." in name))
 
 
 @dataclass(frozen=True)
@@ -231,16 +262,22 @@ class WrittenConfiguration:
             if key in self.raw and self.raw[key] in (None, ""):
                 raise InputError(key, "(nothing)", "have a value on the command line")
 
-    def check(self, source: str) -> None:
+    def check(self, source: str, folders: Mapping[str, Path] | None = None) -> None:
         """Check the form of the configuration, which messages call `source`.
 
-        Nothing is merged, so that missing and contradictory settings are not noticed. Raises
+        Nothing is merged, so that missing and contradictory settings are not noticed. `folders` are
+        the folders of studies by name, whose effects and observables experiments may name. Raises
         InputError.
         """
         from roughgas.config.forms import ConfigurationForm
         from roughgas.config.json_schema import check_schema
 
-        ConfigurationForm.check(self.raw, source)
+        def use_names(name: str) -> None:
+            """Make the names of the studies of an experiment legal."""
+            studies = studies_of(name, self.raw["experiments"])
+            study_code.use(folders[study] for study in studies if folders and study in folders)
+
+        ConfigurationForm.check(self.raw, source, use_names)
         for changes in (self.raw, *self.raw["scales"].values()):
             if changes.get(ACCURACY) is not None:
                 check_schema(changes[ACCURACY], f"{source}: accuracy", ACCURACY)

@@ -5,7 +5,7 @@ the first illegal value.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
@@ -27,6 +27,7 @@ from roughgas.base.fields import (
     whole,
 )
 from roughgas.base.labels import parser_of
+from roughgas.config import study_code
 from roughgas.config.shaken_layer import LayerSettings
 from roughgas.effects import EFFECTS
 from roughgas.effects.species import PairSettings, SpeciesSettings
@@ -245,7 +246,8 @@ def check_kinds(kinds: SettingsClasses, raw: Any, key: str) -> None:
     """
     for name, changes in mapping(raw or {}, key).items():
         if name not in kinds:
-            raise _with_location(UnknownKeyError(key, name, changes, sorted(kinds)))
+            error = _with_location(UnknownKeyError(key, name, changes, sorted(kinds)))
+            raise _advising(error, study_code.advice(name))
         if changes is not None:
             _read_changes(changes_of(kinds[name].settings), changes, nested_key(key, name))
 
@@ -321,7 +323,14 @@ def _check_cases(cases: Record, key: str) -> None:
 def _with_location(error: UnknownKeyError) -> UnknownKeyError:
     """Return the same error, extended by the mapping where the unknown key is legal, if any."""
     if location := _location_of(error.name, error.content, error.legal_keys):
-        error.legal += f"; did you mean it under `{location}`?"
+        _advising(error, f"; did you mean it under `{location}`?")
+    return error
+
+
+def _advising(error: UnknownKeyError, advice: str) -> UnknownKeyError:
+    """Return the same error, whose text ends in `advice`."""
+    error.legal += advice
+    error.args = error.key, error.value, error.legal  # of a broken study these are kept
     return error
 
 
@@ -386,8 +395,12 @@ class ConfigurationForm(Settings, frozen=True, kw_only=True):
     scales: Annotated[dict[str, Any], reference("scales")]
 
     @classmethod
-    def check(cls, raw: Any, source: str) -> None:
-        """Raise InputError if the form of a configuration `raw`, called `source`, is illegal."""
+    def check(cls, raw: Any, source: str, use_names: Callable[[str], None]) -> None:
+        """Raise InputError if the form of a configuration `raw`, called `source`, is illegal.
+
+        `use_names` makes the effects and observables of the studies of an experiment legal. Changes
+        to an experiment of a study whose code is broken are not checked: it is left out.
+        """
         try:
             read(changes_of(cls), raw, f"{source}: ")
         except UnknownKeyError as error:
@@ -396,23 +409,34 @@ class ConfigurationForm(Settings, frozen=True, kw_only=True):
             raise _with_location(unknown) from None
         for name, settings in mapping(raw.get("experiments"), f"{source}: experiments").items():
             check_name(Reference, name, f"{source}: experiments")
-            ExperimentForm.check(settings, f"{source}: experiments.{name}")
+            if _is_usable(name, use_names):
+                ExperimentForm.check(settings, f"{source}: experiments.{name}")
             if name in RESERVED:
                 legal = "be another name: the workflow has a rule or a product of this one"
                 raise InputError(f"{source}: key of experiments", name, legal)
         for scale, changes in (raw.get("scales") or {}).items():
             check_name(Name, scale, f"{source}: scales")
-            _check_scale(changes, f"{source}: scales.{scale}")
+            _check_scale(changes, f"{source}: scales.{scale}", use_names)
 
 
-def _check_scale(raw: Any, key: str) -> None:
+def _is_usable(name: str, use_names: Callable[[str], None]) -> bool:
+    """Return whether the code of the studies of an experiment can be used: see `use_names`."""
+    try:
+        use_names(name)
+    except InputError:
+        return False
+    return True
+
+
+def _check_scale(raw: Any, key: str, use_names: Callable[[str], None]) -> None:
     """Raise InputError for illegal changes `raw` at one scale, which messages call `key`."""
     for name, changes in mapping(raw, key).items():
         if TASKS_AT_SCALE.fullmatch(name) or name == "accuracy":
             mapping(changes, f"{key}.{name}")
         else:
             check_name(Reference, name, key)
-            ChangeForm.check(changes, f"{key}.{name}")
+            if _is_usable(name, use_names):
+                ChangeForm.check(changes, f"{key}.{name}")
 
 
 class StudyForm(Settings, frozen=True, kw_only=True):

@@ -10,7 +10,7 @@ from roughgas.base import MIN_SIMILARITY, InputError, short_repr, unknown_name_e
 from roughgas.base.fields import RawSettings
 from roughgas.config.configuration import Configuration, WrittenConfiguration
 from roughgas.config.packaged import SHIPPED
-from roughgas.config.study_folders import with_studies
+from roughgas.config.study_folders import folders, with_studies
 from roughgas.config.written import WrittenExperiment
 
 
@@ -63,7 +63,7 @@ def load(path: str | Path, overrides: RawSettings | None = None) -> Configuratio
     configuration. Raises OSError where it cannot be read.
     """
     files = ConfigurationFiles(path, WrittenConfiguration(overrides) if overrides else None)
-    files.written.check(files.source)
+    files.written.check(files.source, folders(*files.files))
     configuration = files.written.configuration(files.source)
     return with_studies(configuration, files.files).checked()
 
@@ -75,7 +75,7 @@ def load_experiment(path: str | Path, name: str, scale: str) -> WrittenExperimen
     read.
     """
     files = ConfigurationFiles(path)
-    files.written.check(files.source)
+    files.written.check(files.source, folders(*files.files))
     configuration = files.written.configuration(files.source)
     base = name.partition("/")[0]
     if "." not in base and base not in configuration.experiments:

@@ -17,9 +17,10 @@ from pathlib import Path
 from typing import Any
 
 from roughgas.base import InputError, check_one_of, merged, short_repr
-from roughgas.base.fields import OwnSettings
+from roughgas.base.fields import OwnSettings, RawSettings
 from roughgas.base.files import LEGAL_FILE, write_text
 from roughgas.base.reading import read_yaml
+from roughgas.config import study_code
 from roughgas.config.configuration import ACCURACY, Configuration
 from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, shipped_studies
 from roughgas.config.study import TaskSettings
@@ -52,9 +53,11 @@ def folders(*files: str | Path) -> dict[str, Path]:
     candidates += [
         folder for search_folder in search_folders for folder in sorted(search_folder.glob("*"))
     ]
-    return {
+    by_name = {
         folder.name: folder for folder in candidates if folder.is_dir() and _may_be_study(folder)
     }
+    study_code.known.update(by_name)
+    return by_name
 
 
 def _may_be_study(folder: Path) -> bool:
@@ -75,7 +78,10 @@ def with_studies(
     A complete configuration includes the settings of accuracy; only the studies of accuracy, and
     those without experiments or tasks, are added to it.
     """
-    study_files, refused = _read_all(configuration, folders(*files), only)
+    folders_by_name = folders(*files)
+    study_files, refused = _read_all(configuration, folders_by_name, only)
+    folder_names = {name: str(folder) for name, folder in folders_by_name.items()}
+    configuration = replace(configuration, folders=folder_names)
     if only is None:
         _check_accuracy(configuration, study_files.values())
     if configuration.complete:
@@ -153,7 +159,8 @@ def _read_all(
     for name in pending:
         if name in folders_by_name and name not in study_files and name not in refused:
             try:
-                study_files[name] = WrittenStudy(name, folders_by_name[name]).file(configuration)
+                written = WrittenStudy(name, folders_by_name[name], folders_by_name)
+                study_files[name] = written.file(configuration)
                 pending += _needs(name, study_files[name])
             except InputError as error:
                 refused[name] = error.args
@@ -212,8 +219,13 @@ def _with_study(
             key: merge_keeping_none(in_study.get(key, {}), changes.get(key, {})) for key in keys
         }
         scales[scale] = {**scale_changes, **of_study}
-    combined = replace(combined, experiments={**combined.experiments, **experiments}, scales=scales)
     source, study = config_name(name), file.study
+    combined = replace(
+        combined,
+        experiments={**combined.experiments, **experiments},
+        scales=scales,
+        studies={**combined.studies, name: study},
+    )
     for key in experiments:
         combined.check_ancestors(key, source)
         for scale in scales:
@@ -307,7 +319,8 @@ def task_settings(
     """Return the settings at `scale` of the tasks of the study `name`, and of experiments they run.
 
     With `module` they are the settings of this module's tasks. If tasks may run all experiments,
-    these are called KEY instead of NAME.KEY. Raises InputError for an unknown scale or module.
+    these are called KEY instead of NAME.KEY, and those with effects or observables of a study are
+    left out. Raises InputError for an unknown scale or module.
     """
     study = configuration.studies[name]
     tasks = study.tasks
@@ -322,10 +335,11 @@ def task_settings(
         full_names = {
             full_name.rpartition(".")[2]: full_name for full_name in configuration.experiments
         }
-    experiments = {
-        task_name: configuration.experiment(full_name, scale).for_points().raw
-        for task_name, full_name in full_names.items()
-    }
+    experiments: dict[str, RawSettings] = {}
+    for task_name, full_name in full_names.items():
+        raw = configuration.experiment(full_name, scale).for_points().raw
+        if tasks.experiments is not None or not study_code.used_files(raw):
+            experiments[task_name] = raw
     return TaskSettings(settings, experiments)
 
 

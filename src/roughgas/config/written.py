@@ -49,6 +49,8 @@ GRID_AXES = ("r", "beta", SEEDS)
 """Axes of every sweep; any other key of a sweep is its third axis."""
 PACKING = "packing"
 """Key of the volume fraction; `box` then gives proportions only."""
+ATTRIBUTES = ("experiment", "scale", "dimension", "swept", "variant", "command", "title", "theory")
+"""Attributes of datasets that no swept parameter may be called like."""
 SEEDS_PER_JOB = 4
 PACKING_TOLERANCE = 1e-9  # relative deviation of the packing of a given box
 MAX_SIDE = 1e9  # a
@@ -405,7 +407,19 @@ class WrittenExperiment:
             )
         if name not in ("", "schedule", *listed):
             return f"begin with an effect of this experiment: {', '.join(sorted(listed))}"
+        if name and parameter in self._names_in_datasets():
+            return f"be a parameter of another name: datasets have a {parameter} already"
         return "not be swept beside packing" if axis == "box" and PACKING in self.raw else ""
+
+    def _names_in_datasets(self) -> set[str]:
+        """Return the names that no swept parameter may have, as it names a dimension of datasets.
+
+        Parameters that theory needs take the place of the attribute.
+        """
+        from roughgas.data.variables import POINT
+
+        observables = self.raw.get("observables") or {}
+        return {*POINT, *observables, *ATTRIBUTES} - {"inertia", "mu", "spin_share"}
 
 
 def _mapping_at(tree: Any, path: shaken_layer.SettingPath) -> Any:

@@ -6,12 +6,13 @@ All functions raise InputError, with a text of one line, for illegal settings an
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from roughgas.base import InputError, check_one_of, short_repr, without_markup
 from roughgas.base.fields import OwnSettings, RawSettings
 from roughgas.base.files import MAX_TABLE_BYTES, MAX_TEXT_BYTES, content_of, name_in_study, readme
 from roughgas.base.reading import read_yaml
+from roughgas.config import study_code
 from roughgas.config.configuration import PAPER, Configuration
 from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, STUDIES_OF_ACCURACY
 from roughgas.config.study import BEYOND, LONG, PAPERS, Study, StudyTasks
@@ -97,10 +98,11 @@ class _Names:
 class WrittenStudy:
     """config.yaml of a study as written in its folder."""
 
-    def __init__(self, name: str, folder: Path) -> None:
+    def __init__(self, name: str, folder: Path, folders: Mapping[str, Path]) -> None:
         """Read config.yaml of the study `name` in `folder`, and check its form.
 
-        Raises InputError for illegal settings, OSError as `content_of` does.
+        `folders` has the folders of all studies by name. Raises InputError for illegal settings
+        and illegal code, OSError as `content_of` does.
         """
         self.name, self.folder, self.source = name, folder, config_name(name)
         from roughgas.config.forms import Name, StudyForm, check_name
@@ -108,6 +110,7 @@ class WrittenStudy:
         check_name(Name, name, f"{STUDIES_FOLDER}: folder")
         _check_files(folder)
         raw = read_yaml(folder / "config.yaml", self.source, pipes=False)
+        study_code.use([folder, *(folders[other] for other in _extended(raw) if other in folders)])
         StudyForm.check(raw, self.source)
         self.raw = {key: content for key, content in raw.items() if content is not None}
         self.experiments: dict[str, RawSettings] = self.raw.get("experiments", {})
@@ -285,6 +288,19 @@ class WrittenStudy:
     def _all_shown(self, swept: Sequence[str]) -> list[str]:
         """Return the names in the study of `swept` experiments, and the names for task data."""
         return [key.removeprefix(f"{self.name}.") for key in swept] + self.data
+
+
+def _extended(raw: Any) -> list[str]:
+    """Return the names of other studies whose experiments the study `raw`, unchecked, extends."""
+    experiments = raw.get("experiments") if isinstance(raw, Mapping) else None
+    if not isinstance(experiments, Mapping):
+        return []
+    parents = [
+        str(settings.get("extends"))
+        for settings in experiments.values()
+        if isinstance(settings, Mapping)
+    ]
+    return sorted({parent.partition(".")[0] for parent in parents if "." in parent})
 
 
 def _title(name: str, folder: Path) -> str:

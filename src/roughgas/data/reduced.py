@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.base import InputError, Interval
+from roughgas.base import InputError, Interval, unknown_name_error
 from roughgas.data import netcdf, variables
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.variables import (
@@ -61,6 +61,28 @@ def read_reduced(path: str | Path) -> "xarray.Dataset":
         _check_numbers(path, name, data[name].values)
         check_legal(path, name, data[name].where(data.n_seeds > 0, 0.0).values)
     return data
+
+
+def sweep_axes(data: "xarray.Dataset") -> list[str]:
+    """Return the names of the coordinates of the sweep of a reduced dataset: r, beta and others."""
+    third = variables.third_axis(data.attrs)
+    return [*([third] if third else []), *GRID_DIMS]
+
+
+def observed_names(data: "xarray.Dataset") -> list[str]:
+    """Return the names of the results of observables in a reduced dataset, without their errors."""
+    return [
+        str(name)
+        for name, variable in data.data_vars.items()
+        if "observable" in variable.attrs and f"{name}_stderr" in data
+    ]
+
+
+def check_swept(data: "xarray.Dataset", name: str) -> None:
+    """Raise InputError unless `name` is a variable of numbers over the sweep of a dataset."""
+    is_swept = name in data.data_vars and {*sweep_axes(data)} <= {*data[name].dims}
+    if not (is_swept and data[name].dtype.kind in "fiu"):
+        raise unknown_name_error("--of", name, ["R"] * ("R" in data) + observed_names(data))
 
 
 def read_by_name(path: str | Path) -> "dict[str, xarray.Dataset]":

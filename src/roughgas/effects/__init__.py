@@ -19,6 +19,7 @@ from typing import NamedTuple, cast
 
 from roughgas.base import InputError, NamedValues, short_repr
 from roughgas.base.fields import Schema, Settings, schema_of_kinds
+from roughgas.base.files import package_of_study
 from roughgas.effects.bath import Langevin
 from roughgas.effects.contacts import (
     ContactAverages,
@@ -103,11 +104,30 @@ EFFECTS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.item
 del EFFECTS["species"]  # a separate key in settings
 """The classes of effects by their names in settings under `effects`, in the order of acting."""
 _ORDER = [*Effects._fields]
+
+
 _HASHES: dict[str, str] = {}
+"""Hashes of the sources of added effects, by name."""
+
+
+OF_STUDIES: dict[str, dict[str, tuple[type, str | None]]] = {}
+"""Effects that studies define, by the study's package and by name: arguments of `add_effect`."""
 
 
 def register_effect(name: str, kind: type, before: str | None = None) -> None:
     """Register a user's class `kind` as an effect of this name: see `roughgas.register_effect`.
+
+    An effect of a study is only noted, in OF_STUDIES: experiments of the study add it, and check it
+    then. Raises InputError as `add_effect`.
+    """
+    if package := package_of_study(kind):
+        OF_STUDIES.setdefault(package, {})[name] = kind, before
+    else:
+        add_effect(name, kind, before)
+
+
+def add_effect(name: str, kind: type, before: str | None = None) -> None:
+    """Add a user's class `kind` to the effects, under this name, until `forget_effect`.
 
     `before` is the name of an effect that acts after it. Raises InputError for an illegal name,
     class or order.

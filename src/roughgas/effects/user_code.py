@@ -109,7 +109,7 @@ def source_hash(name: str, kind: Any) -> str:
             _add_namespaces(namespace, namespaces)
     if not namespaces or not all(Path(file).is_file() for file in namespaces):
         raise InputError(f"effect {name}", kind.__name__, "be defined in a file that is imported")
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(kind.__module__.encode())  # cached machine code imports its types
     for file, namespace in sorted(namespaces.items(), key=lambda pair: Path(pair[0]).name):
         text = Path(file).read_bytes()
         if not _matches_text(text, namespace):
@@ -179,9 +179,8 @@ def _nested_codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _is_of_package(namespace: Namespace) -> bool:
-    """Return whether a module is a part of roughgas."""
-    package = Path(__file__).resolve().parents[1]
-    return package in Path(namespace.get("__file__") or "").resolve().parents
+    """Return whether a module is a part of roughgas; modules of its studies are none."""
+    return str(namespace.get("__name__")).partition(".")[0] == "roughgas"
 
 
 def _origin(namespace: Namespace) -> tuple[str, ...]:

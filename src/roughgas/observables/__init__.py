@@ -14,6 +14,7 @@ from msgspec.structs import asdict
 from roughgas import effects
 from roughgas.base import InputError, NeedsError, short_repr, unknown_name_error
 from roughgas.base.fields import Schema, required_by, schema_of_kinds
+from roughgas.base.files import package_of_study
 from roughgas.data.variables import POINT
 from roughgas.effects.user_code import check_name, check_settings, is_same_definition
 from roughgas.observables.autocorrelation import Autocorrelation, FluxAutocorrelation
@@ -58,8 +59,24 @@ OBSERVABLES: dict[str, type[Observable]] = {
 _REGISTERED: set[str] = set()
 
 
+OF_STUDIES: dict[str, dict[str, Any]] = {}
+"""Classes of observables that studies register, by the study's package and by name."""
+
+
 def register_observable(name: str, observable_class: Any) -> None:
     """Register a class of observables of a user under a name: see `roughgas.register_observable`.
+
+    An observable of a study is only noted, in OF_STUDIES: experiments of the study add it, and
+    check it then. Raises InputError as `add_observable`.
+    """
+    if package := package_of_study(observable_class):
+        OF_STUDIES.setdefault(package, {})[name] = observable_class
+    else:
+        add_observable(name, observable_class)
+
+
+def add_observable(name: str, observable_class: Any) -> None:
+    """Add a class of a user to the observables, under a name, until `forget_observable`.
 
     Raises InputError for an illegal name or class: a setting without a default, an unknown effect,
     or a variable that points have already.
@@ -135,7 +152,9 @@ def _requested_observable(name, settings):
         """Return the observable of a gas; raise NeedsError if it needs spins and nothing spins."""
         if observable_class.needs_spin and system.inertia is None:
             raise NeedsError(f"observables.{name}", "spin")
-        if system.species and not _sums_contacts(observable_class):
+        if system.species and not (
+            issubclass(observable_class, FunctionObservable) or _sums_contacts(observable_class)
+        ):
             return SpeciesObservable(observable_class, system, arguments)
         return observable_class(system, **arguments)
 

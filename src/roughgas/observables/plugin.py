@@ -17,9 +17,10 @@ from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from roughgas.base import InputError, NamedValues
+from roughgas.base import InputError, NamedValues, as_input_errors
 from roughgas.base.fields import Settings, whole
-from roughgas.data.variables import Variable
+from roughgas.data.netcdf import FILE_TYPES
+from roughgas.data.variables import POINT, Variable
 from roughgas.observables.averages import NamedArrays
 from roughgas.observables.frames import Frame, FrameSeries, System
 
@@ -304,6 +305,51 @@ class FunctionObservable(Observable):
                     coordinate_attributes["long_name"], dims=(dim,), **encoding
                 )
                 self.coordinates[dim] = np.asarray(coordinate)
+
+
+RESERVED = {*POINT, *(name for _, names in FILE_TYPES.values() for name in names)}
+"""Names of variables of points, and of those by which the type of a file is known."""
+
+
+class StudyObservable(FunctionObservable):
+    """An observable made of a function in observables.py of a study: see `study_observable`."""
+
+    function: ClassVar[Callable[[Frame], Any]]
+    file: ClassVar[str]
+    """Name of its file in messages."""
+    source_hash: ClassVar[str]
+
+    def __init__(self, system: System) -> None:
+        """Store the system; the result is named after the function."""
+        super().__init__(system, type(self).__name__, type(self).function)
+
+    def observe(self, frame: Frame) -> NamedArrays:
+        """Return the result of the function; raise InputError for any error of it.
+
+        A variable with a name in RESERVED is refused at the first observation.
+        """
+        with as_input_errors(f"{self.file}: {type(self).__name__}()", "observe this frame"):
+            values = super().observe(frame)
+            for name in sorted(self.variables.keys() & RESERVED):
+                raise InputError("variable", name, "have a name that datasets do not have")
+        return values
+
+
+def study_observable(
+    name: str, function: Callable[[Frame], Any], file: str, source_hash: str
+) -> type[StudyObservable]:
+    """Return the class of the observable `name` that a `function` of a frame defines.
+
+    `file` is the name of its file in messages, `source_hash` a hash of its sources.
+    """
+    attributes = {
+        "__doc__": function.__doc__,
+        "__module__": function.__module__,
+        "function": staticmethod(function),
+        "file": file,
+        "source_hash": source_hash,
+    }
+    return type(name, (StudyObservable,), attributes)
 
 
 def _description(source: Any) -> dict[str, str]:

@@ -257,6 +257,7 @@ def _combined(points: Sequence[Summary]) -> Content:
         values[name] = _without_mixtures(values[name], mixed)
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
     observed = _observables(points, axes, grid, mixed)
+    _refuse_names(observed, third | reduced)
     return Content(third | reduced | observed, attributes)
 
 
@@ -440,6 +441,14 @@ def _observables(
         if f"{name}_trusted" in stacks:  # points of earlier versions have no such flags
             combined[f"{name}_trusted"] = _trust(name, stacks, mixed, dims, attributes)
     return {name: combined[name] for name in first_of}
+
+
+def _refuse_names(observed: Mapping[str, Array], others: Iterable[str]) -> None:
+    """Raise InputError for a mean of an observable whose name another variable has already."""
+    for name in sorted(observed.keys() & {*others}):
+        if f"{name}_stderr" in observed:
+            legal = "have a name that no other variable of the reduced dataset has"
+            raise InputError(f"variable of {observed[name].attrs['observable']}", name, legal)
 
 
 def _without_mixtures(share, mixed):

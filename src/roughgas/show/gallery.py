@@ -94,33 +94,39 @@ def plot(
     path: str | Path,
     outputs: Iterable[str | Path],
     over: str | None = None,
-    of: str | None = None,
+    of: Sequence[str] = (),
     **chosen: Sequence[float],
 ) -> list[str]:
-    """Draw a reduced dataset, the time series of a point, or the variable `of` an observable of a
+    """Draw a reduced dataset, the time series of a point, or a variable of an observable of a
     point, into `outputs`, each a .pdf, .png or .svg.
 
-    `path` is the path of the dataset. For a reduced one `over` is the horizontal axis, and `chosen`
-    has the values of r and beta to show, as in `sweep.draw`. Returns a message for each coordinate
-    whose values are not all shown. Raises InputError as `sweep.draw`, for another type of file, and
-    for an axis or values chosen for a point.
+    `path` is the path of the dataset, and `of` names variables to draw, of a point one; by default
+    R, and in a reduced dataset all that observables have measured. For a reduced one `over` is the
+    horizontal axis, and `chosen` has the values of r and beta to show, as in `sweep.draw`. Returns
+    messages on what is not shown. Raises InputError as `sweep.draw`, for another type of file,
+    and for an axis or values chosen for a point.
     """
-    from roughgas.show.figures import sweep
+    from roughgas.show.figures import sweep, variables
 
     with opened(path, REDUCED, POINT) as file:
         is_point = file_type_of(file) == POINT
     if is_point and any((over, *chosen.values())):
         raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
-    if of is not None and not is_point:
-        raise InputError("dataset", path, "be a point for --of")
-    if not is_point:
-        data = read_reduced(path)
+    if is_point:
+        point = read_point(path)
+        if len(of) > 1:
+            raise InputError("--of", ", ".join(of), "be one variable of a point")
+        if of:
+            style.draw(lambda: sweep.draw_observed(point, of[0]), outputs)
+        else:
+            style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
+        return []
+    data = read_reduced(path)
+    names = [*of] or variables.drawn_by_default(data)
+    if names == ["R" if "R" in data else "E_trans"]:
         lines = sweep.coordinates_not_shown(data, over, chosen)
         style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
-        return lines
-    point = read_point(path)
-    if of is None:
-        style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
     else:
-        style.draw(lambda: sweep.draw_observed(point, of), outputs)
-    return []
+        style.draw(lambda: variables.draw(data, names, over, **chosen), outputs)
+        lines = variables.not_shown(data, names, over, chosen)
+    return lines

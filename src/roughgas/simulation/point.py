@@ -376,6 +376,7 @@ def kernels(experiments: Iterable[Experiment], r: float) -> dict[Any, tuple[Scen
     for experiment in experiments:
         scene = protocols.initial_scene(build(experiment, r, -1.0), experiment)
         effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
-        key = effects, tuple(side is None for side in scene.box)
+        sources = [text] if (text := sources_of(scene.effects)) else []
+        key = (effects, tuple(side is None for side in scene.box), *sources)
         scenes.setdefault(key, (scene, experiment))
     return scenes

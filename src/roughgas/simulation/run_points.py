@@ -162,15 +162,18 @@ def checkpoint_owner(
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _codes_of_registered(experiment: Experiment[Any]) -> dict[str, list[bytes]]:
-    """Return the compiled code of the observables that users have registered, by name."""
+def _codes_of_registered(experiment: Experiment[Any]) -> dict[str, str | list[bytes]]:
+    """Return the compiled code of the observables that users have registered, by name.
+
+    Of an observable of a study it is the hash of its sources.
+    """
     if not experiment.observables:
         return {}
     from roughgas.observables import OBSERVABLES  # slow to import
 
     kinds = {name: OBSERVABLES[name] for name in experiment.observables}
     return {
-        name: _code(kind)
+        name: getattr(kind, "source_hash", None) or _code(kind)
         for name, kind in kinds.items()
         if not kind.__module__.startswith("roughgas.")
     }

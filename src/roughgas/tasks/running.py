@@ -22,7 +22,7 @@ import xarray as xr
 from roughgas.base import Attributes, InputError, check_one_of, short_repr, unknown_name_error
 from roughgas.base.fields import OwnSettings, RawSettings
 from roughgas.base.files import code_in, study_module, write_text
-from roughgas.config import PAPER, TaskSettings
+from roughgas.config import PAPER, TaskSettings, study_code
 from roughgas.config.packaged import STUDIES_FOLDER
 from roughgas.config.study_folders import check_tasks
 from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
@@ -102,15 +102,19 @@ def run_task(
     module: str | None = None,
     scale: str = PAPER,
     settings: str,
+    studies: Sequence[str] = (),
     output: str | Path,
 ) -> None:
     """Run a task of the study in a folder, or of a `module` of it.
+
+    Its experiments may have effects and observables of the `studies`, given by their folders.
 
     A task that was killed resumes from the checkpoint beside `output`, if it has written one.
     `settings` has the settings of the `study`, or of the module, and of `experiments`, as JSON.
     Raises InputError for an unknown module or task and for illegal settings, CollapseError as a
     simulation does, OSError.
     """
+    study_code.use(studies)
     module_name = module or RUN_MODULE
     run = _study_function(folder, module_name, "run")
     task_settings = TaskSettings.from_text(settings)

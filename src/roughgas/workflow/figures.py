@@ -159,12 +159,20 @@ class Figures:
         `folder` is the folder of its scale in figures/, "" for `paper`.
         """
         code = code_of("show.movies", alone=["cli.excerpts"])
-        return with_files(code, self.movie_settings(folder, movie))
+        of_studies = self.sweeps.codes_of_studies(scale_of(folder), self.movies[movie][0])
+        return " ".join([with_files(code, self.movie_settings(folder, movie)), *of_studies])
 
     def movie_options(self, movie: str) -> list[str]:
         """Return the experiment, or variant, of a movie, and the options of its command."""
         experiment, options = self.movies[movie]
         return [experiment, *options.split()]
+
+    def movie_studies(self, folder: str, movie: str) -> list[str]:
+        """Return the options of a movie for effects and observables of studies; [] without any.
+
+        `folder` is the folder of its scale in figures/, "" for `paper`.
+        """
+        return self.sweeps.study_options(scale_of(folder), self.movies[movie][0])
 
     def study_movie_data(self, folder: str, study: str) -> str:
         """Return the path of the dataset of tasks that the movie of a study shows.

@@ -13,9 +13,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from roughgas.base import InputError
-from roughgas.base.files import code_of
+from roughgas.base.files import code_in, code_of
 from roughgas.base.labels import GridPoint, grid_points, restitution
-from roughgas.config import Configuration, WrittenExperiment
+from roughgas.config import Configuration, WrittenExperiment, study_code
 from roughgas.simulation.experiment import Experiment
 from roughgas.workflow import jobs
 from roughgas.workflow.fingerprints import code_of_points, with_files
@@ -43,6 +43,8 @@ class Sweeps:
         self.point_settings = functools.cache(self._point_settings)
         self.kernel_kinds = functools.cache(self._kernel_kinds)
         self.collisions = functools.cache(self._collisions)
+        self.codes_of_studies = functools.cache(self._codes_of_studies)
+        self.study_options = functools.cache(self._study_options)
 
     def _checked(
         self, scale: str, experiment: str
@@ -127,8 +129,21 @@ class Sweeps:
         return self.written(scale, experiment).text
 
     def point_code(self, scale: str, experiment: str) -> str:
-        """Return the fingerprint of the code of points, and of the files of radii in them."""
-        return with_files(code_of_points(), self.point_settings(scale, experiment))
+        """Return the fingerprint of the code of points, of files of radii, and of studies' code."""
+        code = with_files(code_of_points(), self.point_settings(scale, experiment))
+        return " ".join([code, *self.codes_of_studies(scale, experiment)])
+
+    def _codes_of_studies(self, scale: str, experiment: str) -> list[str]:
+        """Return the fingerprint of each file of a study whose effects or observables it has."""
+        raw = self.written(scale, experiment).raw
+        self.configuration.use_names(experiment)
+        return [code_in(folder, file) for folder, file in study_code.used_files(raw)]
+
+    def _study_options(self, scale: str, experiment: str) -> list[str]:
+        """Return the options of jobs for the effects and observables of studies; [] without any."""
+        raw = self.written(scale, experiment).raw
+        self.configuration.use_names(experiment)
+        return study_code.options(raw)
 
     @staticmethod
     def kernel_code() -> str:
@@ -147,6 +162,7 @@ class Sweeps:
         from roughgas.simulation.point import kernels
 
         _, variants = self.checked(scale, experiment)
+        self.configuration.use_names(experiment)
         with located(KERNEL.format(scale=scale, experiment=experiment, r=r)):
             number = restitution(r)
         return sorted(map(str, kernels(variants, number)))
@@ -173,6 +189,7 @@ class Sweeps:
 
         point = _point(r, beta, "1")
         _, (settings, *_) = self.checked(scale, experiment)
+        self.configuration.use_names(experiment)
         return expected_collisions(
             settings, point.r, point.beta if "spin" in settings.effects else -1.0
         )

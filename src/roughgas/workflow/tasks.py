@@ -10,7 +10,7 @@ import functools
 
 from roughgas.base import unknown_name_error
 from roughgas.base.files import code_in
-from roughgas.config import TaskSettings, study_folders
+from roughgas.config import TaskSettings, study_code, study_folders
 from roughgas.workflow.fingerprints import RUNNING, code_of_tasks, with_files
 from roughgas.workflow.paths import TASK
 from roughgas.workflow.studies import Studies, StudyProducts
@@ -62,7 +62,28 @@ class Tasks:
         """
         products = self.by_task_folder[task_folder]
         code = code_of_tasks(products.folder, products.task_folders[task_folder] or "tasks")
-        return with_files(code, self.settings(scale, task_folder, task))
+        of_studies = [
+            code
+            for experiment in self._experiments(task_folder)
+            for code in self.studies.sweeps.codes_of_studies(scale, experiment)
+        ]
+        code = with_files(code, self.settings(scale, task_folder, task))
+        return " ".join([code, *dict.fromkeys(of_studies)])
+
+    def study_options(self, task_folder: str) -> list[str]:
+        """Return the options of tasks for effects and observables of studies; [] without any."""
+        folders = [
+            folder
+            for experiment in self._experiments(task_folder)
+            for folder in self.configuration.code_folders(experiment)
+        ]
+        return study_code.options_of(folders)
+
+    def _experiments(self, task_folder: str) -> list[str]:
+        """Return the full names of the experiments that tasks may run by a list of them."""
+        tasks = self.by_task_folder[task_folder].study.tasks
+        assert tasks is not None
+        return [*(tasks.experiments or {}).values()]
 
     def priority(self, scale: str, task_folder: str, task: str) -> int:
         """Return the priority of the job of a task: the longest tasks start first.

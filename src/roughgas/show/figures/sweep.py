@@ -7,7 +7,7 @@ show by coordinate (r, beta).
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,8 +58,8 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     values of r or beta to show. Raises InputError for axes and values that the data lack.
     """
     layout = layout_of(data, over, chosen)
-    data = data.sel({layout.over: _chosen_values(data, layout.over, chosen.get(layout.over))})
-    numeric, axis = _with_numeric_axis(data, layout.over)
+    data = data.sel({layout.over: chosen_values(data, layout.over, chosen.get(layout.over))})
+    numeric, axis = with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections = [{layout.panels: value} if layout.panels else {} for value in panels]
     width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
@@ -69,11 +69,11 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
         _panel_content(numeric, layout, axis, selection, selection is selections[-1])
         for selection in selections
     ]
-    contents[0] = contents[0]._replace(message=_drawn(numeric, "R", layout.over))
+    contents[0] = contents[0]._replace(message=message_of(numeric, "R", layout.over))
     figure = panel.ratio_figure(
         *contents, width=width + LEGEND_WIDTH, averages=panel.averages_of(numeric)
     )
-    _label_words(figure, data, layout.over)
+    label_words(figure.axes, data, layout.over)
     return figure
 
 
@@ -89,15 +89,19 @@ def layout_of(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[
     if over not in names:
         raise unknown_name_error("axis", over, names)
     other_axes = [name for name in ("beta", third, "r") if name and name != over]
-    values = {name: _chosen_values(data, name, chosen.get(name)) for name in other_axes}
+    values = {name: chosen_values(data, name, chosen.get(name)) for name in other_axes}
     # the coordinate with more values becomes series, the other one panels
     other_axes.sort(key=lambda name: len(values[name]), reverse=True)
     chosen_few = {}
     for name, limit in zip(other_axes, (MAX_SERIES, MAX_PANELS), strict=False):
-        last = len(values[name]) - 1
-        indices = np.linspace(0, last, min(limit, last + 1)).round().astype(int)
-        chosen_few[name] = [values[name][k] for k in indices]
+        chosen_few[name] = evenly_spaced(values[name], limit)
     return Layout(over, other_axes[0], other_axes[1] if len(other_axes) > 1 else None, chosen_few)
+
+
+def evenly_spaced(values: Sequence[Any], number: int) -> list[Any]:
+    """Return at most `number` values, evenly spaced among all, the first and the last included."""
+    last = len(values) - 1
+    return [values[k] for k in np.linspace(0, last, min(number, last + 1)).round().astype(int)]
 
 
 def coordinates_not_shown(
@@ -108,22 +112,22 @@ def coordinates_not_shown(
     lines = []
     for name, drawn in layout_of(data, over, chosen).values.items():
         if len(drawn) < data.sizes[name]:
-            values = ", ".join(_value_text(value) for value in drawn)
+            values = ", ".join(value_text(value) for value in drawn)
             lines.append(f"{len(drawn)} of {data.sizes[name]} values of {name} are shown: {values}")
     return lines
 
 
-def _chosen_values(data: xr.Dataset, name: str, chosen: Sequence[float] | None) -> list[Any]:
+def chosen_values(data: xr.Dataset, name: str, chosen: Sequence[float] | None) -> list[Any]:
     """Return the chosen values of the coordinate `name`, by default all. Raises InputError for
     values that the data lack."""
     available = data[name].values.tolist()
     for value in chosen or ():
         if value not in available:
-            raise InputError(name, value, f"be one of {', '.join(map(_value_text, available))}")
+            raise InputError(name, value, f"be one of {', '.join(map(value_text, available))}")
     return list(chosen or available)
 
 
-def _with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
+def with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
     """Return the data with words on the coordinate `over` replaced by their numbers, and the
     horizontal axis."""
     values, predefined = data[over].values, AXES.get(over)
@@ -146,13 +150,13 @@ def _with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.A
     return data, panel.Axis(over, label, limits, (low, high) if high > low else limits, logarithmic)
 
 
-def _label_words(figure: Figure, data: xr.Dataset, over: str) -> None:
-    """Label the horizontal axes of a figure with the words of the coordinate `over`, in place of
+def label_words(panels: Iterable[Axes], data: xr.Dataset, over: str) -> None:
+    """Label the horizontal axes of `panels` with the words of the coordinate `over`, in place of
     their numbers."""
     words = data[over].values
     if words.dtype.kind in "fiu":
         return
-    for axes in figure.axes:
+    for axes in panels:
         axes.set_xticks(range(len(words)), [word.replace("_", "\n") for word in words])
         axes.xaxis.minorticks_off()
 
@@ -164,7 +168,7 @@ def _panel_content(
     has a legend."""
     drawn = [
         series(
-            data, _label(layout.series, value), line_style, **{layout.series: value}, **selection
+            data, label_of(layout.series, value), line_style, **{layout.series: value}, **selection
         )
         for value, line_style in zip(layout.values[layout.series], LINE_STYLES, strict=False)
     ]
@@ -173,7 +177,7 @@ def _panel_content(
         "legend": {"loc": "outside"} if last else {},
         "axis": axis,
     }
-    return panel.PanelContent(_title(data, selection), [data], drawn, **options)
+    return panel.PanelContent(title_of_panel(data, selection), [data], drawn, **options)
 
 
 def _energy_figure(data, layout, axis, selections, width) -> Figure:
@@ -189,26 +193,30 @@ def _energy_figure(data, layout, axis, selections, width) -> Figure:
             row = data.sel({layout.series: value, **selection})
             error = row.get("E_trans_stderr", np.nan * row.E_trans)
             style = {"color": line_style.colour, "fmt": line_style.marker, "capsize": 1.5}
-            label = _label(layout.series, value)
+            label = label_of(layout.series, value)
             axes.errorbar(row[layout.over], row.E_trans, error, label=label, **style)
         axis.prepare(axes)
         axes.legend()
-        message = _drawn(data, "Energy", layout.over) if selection is selections[0] else ""
-        panel.add_title(axes, [data], _title(data, selection), message)
+        message = message_of(data, "Energy", layout.over) if selection is selections[0] else ""
+        panel.add_title(axes, [data], title_of_panel(data, selection), message)
     panels[0].set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
     return figure
 
 
-def _drawn(data: xr.Dataset, quantity: str, over: str) -> str:
+def message_of(data: xr.Dataset, quantity: str, over: str) -> str:
     """Return the title of a figure, which names what is drawn: a quantity over the coordinate
     `over`, and the theory if the quantity is R."""
-    symbol = SYMBOLS.get(over)
-    axis = f"${symbol}$" if symbol else over.replace("_", " ")
     theory = equation_of(data.attrs).name if quantity == "R" else ""
-    return f"{quantity} over {axis}" + (f", beside {theory}" if theory else "")
+    return f"{quantity} over {name_of_axis(over)}" + (f", beside {theory}" if theory else "")
 
 
-def _title(data: xr.Dataset, selection: Record) -> str:
+def name_of_axis(name: str) -> str:
+    """Return a coordinate's symbol, or else its name, for a title."""
+    symbol = SYMBOLS.get(name)
+    return f"${symbol}$" if symbol else name.replace("_", " ")
+
+
+def title_of_panel(data: xr.Dataset, selection: Record) -> str:
     """Return the title of a panel: the experiment, and the values in `selection` by coordinate.
 
     An experiment of a study is called by its key, and by the study unless this has the same name.
@@ -216,11 +224,14 @@ def _title(data: xr.Dataset, selection: Record) -> str:
     study, _, key = data.attrs["experiment"].rpartition(".")
     name = (key if study in ("", key) else f"{study}: {key}").replace("_", " ")
     return ", ".join(
-        [f"{name[0].upper()}{name[1:]}", *(_label(*coordinate) for coordinate in selection.items())]
+        [
+            f"{name[0].upper()}{name[1:]}",
+            *(label_of(*coordinate) for coordinate in selection.items()),
+        ]
     )
 
 
-def _label(name: str, value: Any) -> str:
+def label_of(name: str, value: Any) -> str:
     """Return a coordinate's name and value as a label; a value that is a word stands alone."""
     if isinstance(value, str):
         return value.replace("_", " ")
@@ -228,7 +239,7 @@ def _label(name: str, value: Any) -> str:
     return rf"${symbol} = {value:g}$" if symbol else f"{name.replace('_', ' ')} {value:g}"
 
 
-def _value_text(value: Any) -> str:
+def value_text(value: Any) -> str:
     """Return the value of a coordinate, a number or a word, as text."""
     return value if isinstance(value, str) else f"{value:g}"
 
@@ -349,7 +360,7 @@ def draw_observed(point: xr.Dataset, name: str) -> Figure:
     values = point[name].transpose(..., axis)
     errors = point.get(f"{name}_stderr", values * np.nan).transpose(..., axis)
     trusted = panel.trusted(point, name).transpose(..., axis).values
-    for number, index in enumerate(_line_indices(values)):
+    for number, index in enumerate(line_indices(values)):
         line_style = LINE_STYLES[number % len(LINE_STYLES)]
         line, error = values.values[index], errors.values[index]
         axes.plot(
@@ -357,15 +368,15 @@ def draw_observed(point: xr.Dataset, name: str) -> Figure:
             line,
             color=line_style.colour,
             linestyle=line_style.line,
-            label=_line_label(values, index),
+            label=line_label(values, index),
         )
-        _draw_errors(axes, coordinate, line, error, trusted[index], line_style.colour)
+        draw_errors(axes, coordinate, line, error, trusted[index], line_style.colour)
     coordinate_label, variable_label = (
         variable.replace("_", " ") for variable in (axis, name.removesuffix("_species"))
     )
     axes.set(
-        xlabel=f"{coordinate_label}{_unit_suffix(point[axis])}",
-        ylabel=f"{variable_label}{_unit_suffix(values)}",
+        xlabel=f"{coordinate_label}{unit_suffix(point[axis])}",
+        ylabel=f"{variable_label}{unit_suffix(values)}",
     )
     axes.set_title(title_of_point(point), fontsize=8)
     if values.ndim > 1:
@@ -380,7 +391,7 @@ BAND: Style = {"alpha": 0.25, "linewidth": 0}
 DOUBTFUL_BAND: Style = {"alpha": 0.08, "linewidth": 0}
 
 
-def _draw_errors(axes: Axes, coordinate, line, error, trusted, colour: str) -> None:
+def draw_errors(axes: Axes, coordinate, line, error, trusted, colour: str) -> None:
     """Draw a band of one standard error (`error`) to either side of the values `line`, paler next
     to values whose error is not trusted.
 
@@ -398,7 +409,7 @@ def _numeric_axis(point: xr.Dataset, name: Any) -> str | None:
     return next((dim for dim in dims[::-1] if point[dim].dtype.kind in "fiu"), None)
 
 
-def _line_indices(values: xr.DataArray) -> list[tuple[int, ...]]:
+def line_indices(values: xr.DataArray) -> list[tuple[int, ...]]:
     """Return the index of each line of a variable, over all dimensions but the last; pairs of
     species are in one order only."""
     indices, dims = np.ndindex(values.shape[:-1]), values.dims
@@ -408,7 +419,7 @@ def _line_indices(values: xr.DataArray) -> list[tuple[int, ...]]:
     return [index for index in indices if index[first] <= index[second]]
 
 
-def _line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
+def line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
     """Return the label of the line at `index` of a variable: its species, or other coordinates, by
     name or number."""
     names = ["species" if dim == "other" else dim for dim in values.dims[:-1]]
@@ -416,7 +427,7 @@ def _line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
     return ", ".join(str(values[n].values[k]) if n in values.coords else str(k) for n, k in pairs)
 
 
-def _unit_suffix(values: xr.DataArray) -> str:
+def unit_suffix(values: xr.DataArray) -> str:
     """Return the unit of a variable as the end of an axis label, such as " / a"; "" without a
     unit."""
     unit = unit_of(values.attrs)

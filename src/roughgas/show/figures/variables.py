@@ -1,0 +1,206 @@
+"""Figures of any variables of a reduced dataset, a row of panels for each.
+
+A variable is drawn over an axis of the sweep, with a series for each value of another axis, or, if
+it has a numeric coordinate of its own, as a profile has its height, along this coordinate, with a
+line for each value of the axis. Other dimensions, such as species, make further series and lines.
+
+`over` and `chosen` are as in roughgas.show.figures.sweep.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from roughgas.base import Record
+from roughgas.data.reduced import check_swept, observed_names, sweep_axes
+from roughgas.show.figures import panel, sweep
+from roughgas.show.style import LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
+from roughgas.theory.prediction import equation_of
+
+MAX_ROWS, MAX_LINES = 5, 10
+ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
+LETTERS_PER_INCH = 11.5  # of the title
+
+
+def drawn_by_default(data: xr.Dataset) -> list[str]:
+    """Return the variables of a figure of a reduced dataset for which none are named.
+
+    They are R, or else E_trans, and the results of observables: first those that are drawn over the
+    sweep.
+    """
+    observed = observed_names(data)
+    observed.sort(key=lambda name: _coordinate(data, name) is not None)
+    return ["R" if "R" in data else "E_trans", *observed][:MAX_ROWS]
+
+
+def not_shown(
+    data: xr.Dataset, names: Sequence[str], over: str | None, chosen: Mapping[str, Sequence[float]]
+) -> list[str]:
+    """Return a message for all that a figure of `names` leaves out of a reduced dataset."""
+    lines = sweep.coordinates_not_shown(data, over, chosen)
+    profiles = [name for name in names if _coordinate(data, name)]
+    layout = sweep.layout_of(data, over, chosen)
+    values = sweep.chosen_values(data, layout.over, chosen.get(layout.over))
+    few = sweep.evenly_spaced(values, len(LINE_STYLES))
+    if profiles and len(few) < len(values):
+        count = f"{len(few)} of {len(values)} values of {layout.over}"
+        texts = ", ".join(map(sweep.value_text, few))
+        lines.append(f"{', '.join(profiles)}: {count} are shown: {texts}")
+    if profiles and len(layout.values[layout.series]) > 1:
+        value = sweep.value_text(_middle(layout.values[layout.series]))
+        lines.append(f"{', '.join(profiles)}: {layout.series} = {value} alone is shown")
+    if left_out := [name for name in observed_names(data) if name not in names]:
+        lines.append(f"not shown: {', '.join(left_out)} (--of names what to draw)")
+    return lines
+
+
+def draw(
+    data: xr.Dataset, names: Sequence[str], over: str | None = None, **chosen: Sequence[float]
+) -> Figure:
+    """Draw the variables `names` of a reduced dataset, a row for each, and return the figure.
+
+    Raises InputError for names, axes and values that the data lack.
+    """
+    for name in names:
+        check_swept(data, name)
+    layout = sweep.layout_of(data, over, chosen)
+    values = sweep.chosen_values(data, layout.over, chosen.get(layout.over))
+    data = data.sel({layout.over: values})
+    numeric, axis = sweep.with_numeric_axis(data, layout.over)
+    panels = layout.values[layout.panels] if layout.panels else [None]
+    selections: list[Record] = [{layout.panels: value} if layout.panels else {} for value in panels]
+    one_wide = WIDTH + sweep.LEGEND_WIDTH
+    width = one_wide if len(panels) == 1 else max(TWO_WIDE, 0.5 * TWO_WIDE * len(panels))
+    size = width, TITLE_HEIGHT + ROW_HEIGHT * len(names)
+    beside_legends = 0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=beside_legends))
+    grid = figure.subplots(len(names), len(panels), sharey="row", squeeze=False)
+    for row, name in zip(grid, names, strict=True):
+        for axes, selection in zip(row, selections, strict=True):
+            if coordinate := _coordinate(data, name):
+                _draw_along(axes, data, name, coordinate, layout, selection)
+            else:
+                _draw_over(axes, numeric, name, axis, layout, selection)
+                sweep.label_words([axes], data, layout.over)
+        label = name.replace("_", " ")
+        row[0].set_ylabel(f"{label}\n{sweep.unit_suffix(data[name])}".rstrip(), fontsize=8)
+        legend = row[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+        legend.set_in_layout(False)  # beside the last column, whose width it leaves alone
+    for axes, selection in zip(grid[0], selections, strict=True):
+        panel.add_title(axes, [data], sweep.title_of_panel(data, selection))
+    message = wrap(_message(data, names, layout.over), int(width * LETTERS_PER_INCH))
+    figure.suptitle("\n".join(message), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    figure.align_ylabels()
+    if not all(panel.trusted(data, name).all() for name in names):
+        figure.legend(handles=[panel.key_of_trust()], loc="outside lower right")
+    return figure
+
+
+def _coordinate(data: xr.Dataset, name: str) -> str | None:
+    """Return the last numeric coordinate of a variable besides those of the sweep; None without.
+
+    A dimension without coordinates counts as its indices.
+    """
+    dims = [str(dim) for dim in data[name].dims if dim not in sweep_axes(data)]
+    return next((dim for dim in dims[::-1] if data[dim].dtype.kind in "fiu"), None)
+
+
+def _draw_over(
+    axes: Axes,
+    data: xr.Dataset,
+    name: str,
+    axis: panel.Axis,
+    layout: sweep.Layout,
+    selection: Record,
+) -> None:
+    """Draw a variable with error bars over an axis of the sweep, at the `selection` of a panel.
+
+    R is drawn with the lines of theory.
+    """
+    axis.prepare(axes)
+    for value, style in zip(layout.values[layout.series], LINE_STYLES, strict=False):
+        label = sweep.label_of(layout.series, value)
+        row = data.sel({layout.series: value, **selection})
+        if name in panel.averages_of(data):
+            curve = panel.series(data, label, style, **{layout.series: value}, **selection)
+            panel.draw_theory(panel.Panel(axes, (), axis), [curve])
+        for line, error, trusted, text, inner in _lines(row, name, layout.over):
+            marked = style._replace(marker=inner.marker) if text else style
+            text = ", ".join(filter(None, (label, text)))
+            _draw_bars(axes, row[layout.over].values, line, error, trusted, marked, text)
+
+
+def _draw_bars(axes: Axes, x, values, errors, trusted, style: LineStyle, label: str) -> None:
+    """Draw `values` at `x`, (n,), with error bars; bars that are not `trusted` are paler."""
+    common: Style = {"color": style.colour, "capsize": 1.5, "elinewidth": 0.8}
+    bars = np.where(trusted, errors, np.nan)
+    axes.errorbar(x, values, bars, fmt=style.marker, ms=3.6, label=label, **common)
+    if not trusted.all():
+        bars = np.where(trusted, np.nan, errors)
+        axes.errorbar(x, values, bars, fmt="none", **common, **panel.NOT_TRUSTED)
+
+
+def _draw_along(
+    axes: Axes,
+    data: xr.Dataset,
+    name: str,
+    coordinate: str,
+    layout: sweep.Layout,
+    selection: Record,
+) -> None:
+    """Draw a variable along its own coordinate, a line for each of a few values of the sweep.
+
+    These are values of the axis `over`, in the middle of the series of the figure, at the
+    `selection` of a panel.
+    """
+    middle = {layout.series: _middle(layout.values[layout.series])}
+    x = data[coordinate].values
+    for value, style in zip(
+        sweep.evenly_spaced(data[layout.over].values.tolist(), len(LINE_STYLES)),
+        LINE_STYLES,
+        strict=False,
+    ):
+        label = sweep.label_of(layout.over, value)
+        row = data.sel({layout.over: value, **middle, **selection})
+        for line, error, trusted, text, inner in _lines(row, name, coordinate):
+            text = ", ".join(filter(None, (label, text)))
+            options: Style = {"color": style.colour, "linestyle": inner.line if text else "-"}
+            axes.plot(x, line, label=text, **options)
+            sweep.draw_errors(axes, x, line, error, trusted, style.colour)
+    label = coordinate.replace("_", " ")
+    axes.set_xlabel(f"{label}{sweep.unit_suffix(data[coordinate])}")
+
+
+def _lines(
+    row: xr.Dataset, name: str, along: str
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, str, LineStyle]]:
+    """Yield values, errors and trust, (n,) each `along` a dimension, label and style of each line.
+
+    The label names the other dimensions of the variable, as species; at most MAX_LINES are drawn.
+    """
+    values = row[name].transpose(..., along)
+    errors = row.get(f"{name}_stderr", values * np.nan).transpose(..., along).values
+    trusted = panel.trusted(row, name).transpose(..., along).values
+    for number, index in enumerate(sweep.line_indices(values)[:MAX_LINES]):
+        style = LINE_STYLES[number % len(LINE_STYLES)]
+        label = sweep.line_label(values, index)
+        yield values.values[index], errors[index], trusted[index], label, style
+
+
+def _message(data: xr.Dataset, names: Sequence[str], over: str) -> str:
+    """Return the title of a figure, which names the variables, the axis, and the theory of R."""
+    *first, last = (name.replace("_", " ") for name in names)
+    text = f"{', '.join(first)} and {last}" if first else last
+    theory = f", R beside {equation_of(data.attrs).name}" if "R" in names else ""
+    return f"{text} over {sweep.name_of_axis(over)}{theory}"
+
+
+def _middle(values: Sequence[Any]) -> Any:
+    """Return the value in the middle of a list."""
+    return values[len(values) // 2]

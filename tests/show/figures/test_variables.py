@@ -1,0 +1,95 @@
+"""Figures of any variables of a sweep, a row for each."""
+
+import numpy as np
+import pytest
+from observed_sweep import observed_sweep
+from tests.show.figures.legibility import faults_of_letters
+
+from roughgas.base import InputError
+from roughgas.show.figures import variables
+
+SPEEDS = ("kicks.speed", (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1))
+
+
+def labels(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+@pytest.mark.parametrize("third", [None, SPEEDS])
+def test_a_figure_shows_r_beside_theory_and_all_that_is_observed(third):
+    data = observed_sweep(third)
+    names = variables.drawn_by_default(data)
+    assert names == ["R", "fast", "squares", "profile"]
+    assert faults_of_letters(lambda: variables.draw(data, names)) == []
+    figure = variables.draw(data, names)
+    columns = 1 if third is None else 2
+    assert len(figure.axes) == len(names) * columns
+    over = r"$\beta$" if third is None else "speed"
+    title = f"R, fast, squares and profile over {over}, R beside Lun's formula"
+    assert figure.get_suptitle() == title
+    assert [axes.get_ylabel() for axes in figure.axes[::columns]] == [
+        *("R", "fast", "squares\n / (a^2 T^-2)", "profile\n / a/T")
+    ]
+
+
+def test_values_and_their_errors_are_drawn():
+    data = observed_sweep()
+    _, fast, squares, profile = variables.draw(data, variables.drawn_by_default(data)).axes
+    for axes, expected in (
+        (fast, [[0.05, 0.1, 0.15]] * 2),
+        (squares, [[0.05, 0.1, 0.15], [0.1, 0.2, 0.3]] * 2),
+    ):
+        drawn = [bars[0].get_ydata() for bars in axes.containers]
+        np.testing.assert_allclose(drawn, expected)
+        segments = axes.containers[0][2][0].get_segments()
+        np.testing.assert_allclose(np.diff(segments, axis=1)[:, 0, 1], 0.02)
+    assert labels(squares) == [f"$r = {r}$, {side}" for r in (0.8, 0.9) for side in "xy"]
+    lines = [line.get_ydata() for line in profile.get_lines()]
+    np.testing.assert_allclose(lines, np.outer([0.05, 0.1, 0.15], [0.0, 1.0, 4.0, 9.0]))
+    assert labels(profile) == [rf"$\beta = {beta}$" for beta in ("-0.5", "0", "0.5")]
+    assert profile.get_xlabel() == "height / a"
+
+
+def test_untrusted_errors_are_paler_and_explained():
+    (axes,) = variables.draw(observed_sweep(), ["fast"]).axes
+    assert len(axes.containers) == 2 and not axes.figure.legends
+    (axes,) = variables.draw(observed_sweep(trusted=-1.0), ["fast"]).axes
+    assert len(axes.containers) == 4
+    (legend,) = axes.figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["paler: the error is not trusted"]
+
+
+def test_a_line_says_what_is_left_out():
+    data = observed_sweep(SPEEDS)
+    assert variables.not_shown(data, ["fast"], None, {}) == [
+        "not shown: squares, profile (--of names what to draw)"
+    ]
+    assert variables.not_shown(data, ["fast", "squares", "profile"], None, {}) == [
+        "profile: 5 of 6 values of speed are shown: 1e-06, 1e-05, 0.0001, 0.01, 0.1",
+        "profile: beta = 0 alone is shown",
+    ]
+    wide = data.assign({f"more{k}": data.fast for k in range(9)})
+    wide = wide.assign({f"more{k}_stderr": data.fast_stderr for k in range(9)})
+    names = variables.drawn_by_default(wide)
+    assert names == ["R", "fast", "squares", "more0", "more1"]
+    (line,) = variables.not_shown(wide, names, None, {})
+    assert line.startswith("not shown: profile, more2, more3, ")
+
+
+def test_words_stand_below_the_axis():
+    data = observed_sweep(("floor.wave", ("sine", "triangle")))
+    figure = variables.draw(data, ["fast", "profile"])
+    *fast, profile, _ = figure.axes
+    for axes in fast:
+        assert [text.get_text() for text in axes.get_xticklabels()] == ["sine", "triangle"]
+    assert labels(figure.axes[-1]) == ["sine", "triangle"]
+    assert profile.get_xlabel() == "height / a"
+
+
+def test_other_variables_of_the_sweep_are_drawn_and_unknown_ones_refused():
+    data = observed_sweep()
+    (axes,) = variables.draw(data, ["E_trans"]).axes
+    np.testing.assert_allclose(axes.containers[0][0].get_ydata(), 1.0)
+    for name in ("fest", "side", "n_seeds_of_all"):
+        with pytest.raises(InputError, match=f"--of = {name}: must be one of R, fast, squares, "):
+            variables.draw(data, [name])

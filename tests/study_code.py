@@ -1,0 +1,79 @@
+"""A study with effects and observables of its own, as text of its files."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+GUIDE = (ROOT / "docs/effects.md").read_text()
+PLASTICITY = next(
+    text for text in re.findall(r"```python\n(.*?)```", GUIDE, re.S) if "class Plasticity(" in text
+)
+EFFECTS = PLASTICITY.replace("from roughgas.base", "import roughgas\nfrom roughgas.base", 1) + (
+    'roughgas.register_effect("plasticity", Plasticity, before="threshold")\n'
+)
+"""The worked example of the guide to effects, and its line."""
+OBSERVABLES = '''
+"""Observables of a test."""
+
+import numpy as np
+import xarray as xr
+
+
+def fast(frame):
+    """The share of particles that are faster than twice the thermal speed."""
+    square = _squares(frame)
+    return np.mean(square > 4 * np.mean(square))
+
+
+fast.long_name = "share of fast particles"
+
+
+def constant(frame):
+    return 1.0
+
+
+def squares(frame):
+    values = (frame.thermal_velocity**2).mean(axis=0)
+    attributes = {"units": "a^2 T^-2", "long_name": "mean square of a component"}
+    return xr.DataArray(values, {"side": ["x", "y"]}, ["side"], attrs=attributes)
+
+
+def _squares(frame):
+    return (frame.thermal_velocity**2).sum(axis=1)
+'''
+HEATED = """
+    description: A heated gas.
+    particles: 20
+    box: [25, 25]
+    effects: {spin: {inertia: 0.5}, thermostat: {power: 1, spin_share: 0.5, interval: 0.5}}
+    schedule: {kind: steady, equilibrate: 20, measure: 80, sample_every: 1}
+    sweep: {r: ["0.9"], beta: ["0", "0.5"], seeds: 2}
+"""
+CONFIG = f"""
+experiments:
+  plain:{HEATED}
+  observed:
+    extends: plain
+    observables: {{fast: {{every: 2}}, squares: {{}}}}
+  constant:
+    extends: plain
+    observables: {{constant: {{}}}}
+  metal:
+    extends: cooling
+    particles: 20
+    box: [25, 25]
+    effects: {{contact_time: null, plasticity: {{yield_speed: 0.5}}}}
+    schedule: {{plateau: 20, replicas: 3}}
+    sweep: {{r: ["0.8"], beta: ["0"], seeds: 2, plasticity.yield_speed: ["0.5", "1"]}}
+"""
+
+
+def add_study(name="mine", effects=EFFECTS, observables=OBSERVABLES, config=CONFIG, folder="."):
+    """Write a study into studies/ of a folder, without the files whose text is None."""
+    study = Path(folder, "studies", name)
+    study.mkdir(parents=True, exist_ok=True)
+    files = {"effects.py": effects, "observables.py": observables, "config.yaml": config}
+    for file, text in files.items():
+        if text is not None:
+            (study / file).write_text(text)
+    return study
