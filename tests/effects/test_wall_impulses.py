@@ -97,7 +97,7 @@ def test_a_falling_particle_turns_at_a_rough_wall():
     assert passed(rows, 0)["right_wall"] == pytest.approx(expected, abs=1e-9)
     assert not passed(rows, 0)["left_wall"].any()
     spin = -falling / 0.5
-    slip = -14.0 - falling - 18.0 + spin  # v_y - w n_x
+    slip = -14.0 - falling - 18.0 - spin  # v_y - w n_x
     expected = [-2.0, slip / 3.0 * 2.0, 0.0, 0.0, 0.0, -slip / 3.0 * 2.0]
     assert passed(rows, 1)["left_wall"] == pytest.approx(expected, abs=1e-9)
 
