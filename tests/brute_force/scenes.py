@@ -22,6 +22,7 @@ UNLIMITED = 2**60
 
 _SUMS = {"contact_averages": {}}
 _ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}, "contact_pairs": {}}
+_IMPULSES = {"wall_impulses": {}}
 _LOG = {"contact_log": {"most": 3000}}
 _PATHS = {"paths": {}}
 _DISKS = {"spin": {"inertia": 0.5}}
@@ -53,7 +54,7 @@ KERNELS = {
     "smooth": _kernel([100, 100]),
     "sheared": _kernel([50, 50], _DISKS, _SUMS, {"shear": {"velocity": 2.0}}),
     "bed": _kernel([50, "open"], _BED, _SUMS),
-    "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _NO_CONTACT_TIME, _LOG),
+    "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _NO_CONTACT_TIME, _LOG, _IMPULSES),
     "spheres": _kernel([12, 12, 12], _SPHERES, _NO_CONTACT_TIME, _ALL_SUMS, _LOG, _PATHS),
     "friction": _kernel([100, 100], _DISKS, _FRICTION),
     "rubbed bed": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _FRICTION),
@@ -76,6 +77,7 @@ KERNELS = {
         {"right_wall": {"restitution": 0.9, "roughness": 0.5}},
         {"bottom_wall": {"velocity": -1.0, "roughness": 0.8}, "lid": _SINE | {"roughness": 0.3}},
         _PATHS,
+        _IMPULSES,
     ),
     "closed spheres": _kernel(
         [12, 12, 12],
@@ -83,6 +85,7 @@ KERNELS = {
         {"front_wall": {"temperature": 2.0, "velocity": -0.5}},
         {"back_wall": {"velocity": 1.0, "roughness": 0.5}, "bottom_wall": {"restitution": 0.9}},
         {"lid": _SINE | {"shaken": "along", "roughness": 0.4}},
+        _IMPULSES,
     ),
     "layer": _kernel(
         [12, 12, "open"],
@@ -91,6 +94,7 @@ KERNELS = {
         {side: _RUBBER for side in ("left_wall", "right_wall", "front_wall", "back_wall")},
         _FRICTION,
         {"power_law": _POWER},
+        _IMPULSES,
     ),
     "tabulated bed": _kernel([50, "open"], _BED, {"restitution_table": _TABLE}),
 }

@@ -7,12 +7,18 @@ Absolute times, textbook roots. Units: a = m = T = 1.
 
 import itertools
 import math
+from collections import defaultdict
 
 import numpy as np
 
 from brute_force.bodies import identical_bodies
 from brute_force.contacts import Contacts
-from brute_force.formulas import falling_time, first_touch, meeting_times
+from brute_force.formulas import (
+    falling_time,
+    first_touch,
+    in_three_dimensions,
+    meeting_times,
+)
 from brute_force.kicks import Bath, Kicks, SplitMix
 from brute_force.sides import thermal_velocity_and_spin
 from brute_force.world import Event, Snapshot
@@ -65,6 +71,8 @@ class BruteForce(Contacts):
         self.contact_sums = np.zeros(3)  # of v_t^2, v_r^2 and v_t.v_r, over contacts of pairs
         self.carried_momentum = np.zeros((3, 3))  # momentum times distance, by component and axis
         self.carried_energy = np.zeros(3)  # energy times distance
+        # momentum (3), and angular momentum of spins (3), lost to the walls of each kind of event
+        self.lost_to_walls = defaultdict(lambda: np.zeros(6))
         self._fold()
 
     def run(self, collisions):
@@ -232,12 +240,24 @@ class BruteForce(Contacts):
 
     def _resolve(self, kind, i, j):
         """Carry out an event."""
-        world = self.world
         if kind == "kick":
             self.kicks.apply(i, self.v, self.w)
         elif kind == "pair":
             self._collide(i, j)
-        elif kind == "floor":
+        else:
+            before = self._momenta(i)
+            self._meet_wall(kind, i)
+            self.lost_to_walls[kind] += before - self._momenta(i)
+
+    def _momenta(self, i):
+        """Momentum (3) of particle i, and angular momentum (3) of its spin."""
+        moment = self.mass[i] * self.q[i] * self.radius[i]  # over a: w is a times the spin
+        return np.concatenate([self.mass[i] * in_three_dimensions(self.v[i]), moment * self.w[i]])
+
+    def _meet_wall(self, kind, i):
+        """Carry out the contact of particle i with the wall of this kind of event."""
+        world = self.world
+        if kind == "floor":
             floor_velocity = self._along_last(self.surface(0.0)[1])
             self._bounce(i, self.dimension - 1, 1.0, floor_velocity, *world.floor[2:])
         elif kind in ("left", "right"):

@@ -66,6 +66,7 @@ PARAMETERS = {
     "contact_stress": {},
     "contact_heat": {},
     "contact_pairs": {},
+    "wall_impulses": {},
     "contact_log": {"most": st.sampled_from([1, 100])},
     "paths": {},
 }

@@ -9,6 +9,7 @@ from recorded import NAMES, bits, recorded
 
 from roughgas.base import InputError, NeedsError
 from roughgas.effects.contacts import COUNTS, HEAT, STRESSES, columns_of_pairs
+from roughgas.effects.wall_impulses import columns_of_walls
 from roughgas.observables import OBSERVABLES, averages
 from roughgas.observables.averages import averaged
 from roughgas.observables.frames import FrameSeries
@@ -28,7 +29,9 @@ SETTINGS = {
 def with_rates(frames):
     """Return frames with random sums over contacts."""
     rng = np.random.default_rng(3)
-    names = columns_of_pairs([*STRESSES, *HEAT, *COUNTS], max(1, len(frames.system.species)))
+    system = frames.system
+    names = columns_of_pairs([*STRESSES, *HEAT, *COUNTS], max(1, len(system.species)))
+    names += columns_of_walls(system.walls, system.dimension, system.inertia is not None)
     return frames._replace(rates={n: rng.standard_normal(frames.instants) for n in names})
 
 

@@ -48,6 +48,7 @@ from roughgas.effects.user_code import (
     is_same_definition,
     source_hash,
 )
+from roughgas.effects.wall_impulses import WallImpulses
 from roughgas.effects.walls import Floor, ShakenWalls, Wall, Walls
 
 
@@ -79,6 +80,7 @@ class Effects(NamedTuple):
     contact_stress: ContactStress | None = None
     contact_heat: ContactHeat | None = None
     contact_pairs: ContactPairs | None = None
+    wall_impulses: WallImpulses | None = None
     contact_log: ContactLog | None = None
     paths: Paths | None = None
 

@@ -16,12 +16,12 @@ from typing import Any
 from roughgas.base import InputError, short_repr
 from roughgas.base.fields import Settings, has_numbers_and_words
 from roughgas.compiling.jit import Compiled
-from roughgas.kernel.hooks import Hooks
+from roughgas.kernel.hooks import OBSERVING_HOOKS, Hooks
 
 NAME = re.compile("[a-z][a-z0-9_]*")
 RESERVED = frozenset({"contacts", "schedule", "species", "stages"})
 """Names with another meaning in settings, sweeps or energy balances."""
-PASSIVE_HOOKS = frozenset({"observe_contact", "observe_wall", "sums"})
+PASSIVE_HOOKS = frozenset({*OBSERVING_HOOKS, "sums"})
 """Hooks of a passive effect."""
 PACKAGE_HOOKS = frozenset({"acceleration", "image_shift", "transfer", "observe_flight"})
 """Hooks whose effects the package refers to by name: positions depend on gravity and shear, and
@@ -66,7 +66,8 @@ def check_class(name: str, kind: Any) -> None:
             key, f"with {reserved[0]}", f"leave {reserved[0]} to effects of the package"
         )
     if is_passive(kind) and (acting := sorted(names - PASSIVE_HOOKS)):
-        legal = f"be without {acting[0]}: an effect with observe_contact only looks"
+        observing = next(name for name in OBSERVING_HOOKS if name in names)
+        legal = f"be without {acting[0]}: an effect with {observing} only looks"
         raise InputError(key, f"with {acting[0]}", legal)
 
 
@@ -88,7 +89,7 @@ def check_settings(key: str, settings: type[Any], base: type[Settings] = Setting
 
 def is_passive(kind: Any) -> bool:
     """Return whether an effect's class only observes, and changes nothing."""
-    return bool(kind.hooks.observe_contact or kind.hooks.observe_flight)
+    return any(getattr(kind.hooks, name) for name in OBSERVING_HOOKS)
 
 
 def source_hash(name: str, kind: Any) -> str:

@@ -15,6 +15,7 @@ T/(m q).
 """
 
 import math
+from collections.abc import Iterable
 from typing import Annotated, Literal, NamedTuple
 
 from roughgas.base import InputError, NeedsError
@@ -41,13 +42,15 @@ from roughgas.effects.settings import (
     register,
 )
 from roughgas.kernel import hooks
-from roughgas.kernel.contact import collide_with_wall, note_contact
+from roughgas.kernel.contact import Contact, collide_with_wall, note_contact
 from roughgas.kernel.event_lists import next_contact, predicted_until
+from roughgas.kernel.hooks import active
 from roughgas.kernel.mathematics import (
     add_scaled,
     along_axis,
     gaussian_vector,
     logarithm,
+    scale,
     subtract,
     uniform,
 )
@@ -74,6 +77,21 @@ SIDES = {  # name -> (axis, end); -1 is the last axis
     "bottom_wall": (-1, LOW),
     "lid": (-1, HIGH),
 }
+BOTH_SIDES = {"walls", "shaken_walls"}  # effects that close both ends of the first axis
+
+
+def closed_sides(names: Iterable[str], dimension: int) -> dict[str, tuple[int, int]]:
+    """Return (axis, end) of each side of the box that effects of these `names` close, by its wall.
+
+    Sides are in the order of the axes, which count from 0, and end is LOW or HIGH. A wall has the
+    name of its effect; two walls of one effect are `left_wall` and `right_wall`.
+    """
+    walls = {*names}
+    if walls & BOTH_SIDES:
+        walls |= {"left_wall", "right_wall"}
+    sides = {"floor": (-1, LOW)} | SIDES
+    closed = {name: (sides[name][0] % dimension, sides[name][1]) for name in sides.keys() & walls}
+    return dict(sorted(closed.items(), key=lambda side: side[1]))
 
 
 ShakenAmplitude = Annotated[
@@ -376,14 +394,31 @@ def _leave_thermal_wall(wall, account, state, scene, i, time):
     after = add_scaled(after, along_axis(box, side.slide_axis, wall.velocity), 1.0)
     ledger_row = state.ledger[0, account]
     set_path_and_book(state, scene, i, position, before, after, time, ledger_row)
+    w, spin = spin_of(state.spin, box, i), scene.effects.spin
     if state.spin is not None:
-        w, spin = spin_of(state.spin, box, i), scene.effects.spin
         deviation = math.sqrt(wall.temperature / spin_mass_of(state.bodies, spin, i))
         spin_change = subtract(gaussian_vector(state.random, w, deviation), w)
         change_spin_and_book(state, scene, i, w, spin_change, ledger_row)
+    for hook in active(scene.effects, "observe_thermal_wall"):
+        contact = _departure(wall, state, scene, i, time, (before, after), w)
+        hook.function(scene.effects[hook.effect_index], hook.account, state, contact)
     note_contact(state, scene.effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
+
+
+@jit
+def _departure(wall, state, scene, i, time, velocities, w):
+    """Return the Contact of particle i with a thermal wall that it leaves at `time`.
+
+    `velocities` are the particle's before and after, `w` is its spin before.
+    """
+    side, box, (before, after) = wall.side, scene.box, velocities
+    n = along_axis(box, side.axis, side.inwards)
+    surface = along_axis(box, side.slide_axis, wall.velocity)
+    impulse = scale(subtract(before, after), mass_of(state.bodies, i))
+    v = subtract(before, surface)
+    return Contact(i, NOBODY, time, n, v, w, impulse, (before, surface), (w, w))
 
 
 @jit

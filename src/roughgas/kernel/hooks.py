@@ -49,6 +49,8 @@ class Hooks(NamedTuple):
     collided; may change nothing but State.sums and State.log"""
     observe_wall: Callable | None = None
     """As `observe_contact`, for contacts with a floor or a wall that is not thermal"""
+    observe_thermal_wall: Callable | None = None
+    """As `observe_contact`, for particles that leave a thermal wall"""
     observe_flight: Callable | None = None
     """(effect, account, state, i, crossings, elapsed): observe the free flight that ends with an
     event of particle i, before its path and spin change; `crossings` are the periods of each axis
@@ -80,6 +82,10 @@ class Hooks(NamedTuple):
     """Whether the effect draws random numbers, from State.random"""
     drives: bool = False
     """Whether the effect supplies energy"""
+
+
+OBSERVING_HOOKS = ("observe_contact", "observe_wall", "observe_thermal_wall", "observe_flight")
+"""Hooks that make an effect passive: it changes nothing, and has no account."""
 
 
 class ActiveHook(NamedTuple):
@@ -114,8 +120,8 @@ def accounts(effects):
 
     Passive effects are last in Effects, so that the accounts of the others equal their ranks.
     """
-    passive = len(active(effects, "observe_contact")) + len(active(effects, "observe_flight"))
-    return sum(effect is not None for effect in effects) - passive
+    passive = {hook.effect_index for name in OBSERVING_HOOKS for hook in active(effects, name)}
+    return sum(effect is not None for effect in effects) - len(passive)
 
 
 def sums(effects):

@@ -36,6 +36,7 @@ from roughgas.observables.plugin import (
     SpeciesObservable,
 )
 from roughgas.observables.shaken_layer import Layer, Pattern
+from roughgas.observables.walls import WallForces
 
 __all__ = ["OBSERVABLES", "Frame", "FrameSeries", "Observable", "System"]
 
@@ -47,6 +48,7 @@ OBSERVABLES: dict[str, type[Observable]] = {
     "pair_correlation": PairCorrelation,
     "stress": Stress,
     "heat_flux": HeatFlux,
+    "wall_forces": WallForces,
     "local_flow": LocalFlow,
     "contacts": Contacts,
     "mean_square_displacement": MeanSquareDisplacement,

@@ -35,6 +35,7 @@ class System(NamedTuple):
     cooling: bool
     species: tuple[SpeciesGroup, ...] = ()  # empty if all particles have radius a and mass m
     period: float | None = None  # of the schedule, in T: a multiple of the period of the drive
+    walls: tuple[str, ...] = ()  # names, as in effects.walls.closed_sides
 
     def only(self, *species: int) -> "System":
         """Return the system with the particles of some `species` only, given by index."""
