@@ -64,6 +64,7 @@ KERNELS = {
     ),
     "heated spheres": _kernel([12, 12, 12], _SPHERES, _HEAT, _FRICTION, _ALL_SUMS),
     "bath": _kernel([100, 100], _DISKS, {"langevin": _BATH}, _PATHS),
+    "monolayer": _kernel([100, 100], _DISKS, {"delta": {"speed": 0.5}}, _FRICTION),
     "viscoelastic": _kernel(
         [100, 100],
         _DISKS,
@@ -150,6 +151,7 @@ def scene_of(experiment, r, beta):
         mu=effects.get("friction", {}).get("mu"),
         thermostat=thermostat
         and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
+        delta=effects.get("delta", {}).get("speed", 0.0),
         bath=bath and bath | {"noise": noisy},
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor

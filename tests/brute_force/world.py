@@ -19,6 +19,7 @@ class World(NamedTuple):
     mu: float | None = None  # coefficient of friction; None: contacts never slide
     thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
     bath: dict | None = None  # settings of a Langevin bath, and whether it has noise
+    delta: float = 0.0  # half the normal speed that contacts of pairs gain
     gravity: float = 0.0  # along the last axis
     floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis

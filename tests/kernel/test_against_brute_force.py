@@ -42,6 +42,8 @@ PISTONS = {
     "lid": SHAKEN | {"wave": "triangle", "period": 1.0},
 }
 SPIN_DRAG = {"interval": 5.0, "drag": 0.0, "temperature": 0.0, "spin_drag": 0.2}
+SLOW = {"speed": 0.2, "restitution": 1.0}
+MONOLAYER = {"delta": {"speed": 0.3}, "threshold": SLOW}
 DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
@@ -150,6 +152,9 @@ CASES = {  # experiment, r, beta, seed
         *(0.98, -0.5, 2),
     ),
     "species, bath": (of_species("bath", 12, [16, 16]), 0.9, 0.2, 17),
+    "monolayer": (settings("monolayer", 8, [12, 12]), 0.9, 0.4, 1),
+    "species, monolayer": (of_species("monolayer", 12, [16, 16]), 0.9, 0.2, 17),
+    "monolayer of smooth spheres": (closed(MONOLAYER, [8, 7, 9]), 0.8, -1.0, 3),
     "drag": (closed({"spin": {"inertia": 0.5}, "langevin": DRAG}, [14, 16]), 1.0, 0.9, 1),
     "species": (of_species("gas", 8, [14, 14]), 0.98, 0.2, 1),
     "species, smallest box": (of_species("gas", 3, [6.02, 9.0]), 0.99, 0.5, 2),
@@ -191,6 +196,7 @@ RARE |= {"viscoelastic gas", "slow viscoelastic gas"}
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
 RARE |= {"species, shaken walls", "species, spheres", "species, bath", "species, kicks", "drag"}
+RARE |= {"species, monolayer", "monolayer of smooth spheres"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),

@@ -29,7 +29,7 @@ from roughgas.effects.contacts import (
     Friction,
     Spin,
 )
-from roughgas.effects.drives import Gravity, Shear, Thermostat
+from roughgas.effects.drives import Delta, Gravity, Shear, Thermostat
 from roughgas.effects.paths import Paths
 from roughgas.effects.restitution import (
     ContactTime,
@@ -68,6 +68,7 @@ class Effects(NamedTuple):
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     langevin: Langevin | None = None
+    delta: Delta | None = None
     friction: Friction | None = None
     viscoelastic: Viscoelastic | None = None
     power_law: PowerLaw | None = None

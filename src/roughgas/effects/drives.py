@@ -1,4 +1,4 @@
-"""Effects on all particles: gravity, shear, and random kicks.
+"""Effects that drive all particles: gravity, shear, random kicks, and the Delta model.
 
 Shear through Lees-Edwards boundaries. The box is periodic; its image above (along the second axis)
 moves along the first axis at the velocity U, the image below at -U. A particle that leaves at the
@@ -18,6 +18,13 @@ translation and s to rotation. Units: a = m = T = 1.
 
 Where particles differ, their momenta change by opposite amounts: the mean energy of a kick is
 independent of the pair, and particle i receives the share m_j/(m_i + m_j), larger if it is lighter.
+
+The Delta model is a monolayer that is shaken from below, without its third axis: vertical motion
+passes energy to horizontal motion in contacts. R. Brito, D. Risso & R. Soto, Phys. Rev. E 87,
+022209 (2013): a pair that approaches at the normal speed g parts at r g + 2 Delta. A contact adds
+(m/4) [(r^2 - 1) g^2 + 4 r Delta g + 4 Delta^2] to the energy. The first term is the contacts' loss,
+the rest the drive's gain; where masses differ, m is twice the reduced mass. With Coulomb friction a
+contact slides where sticking would take more than mu times the whole normal impulse.
 """
 
 import math
@@ -254,3 +261,30 @@ register(
     random=True,
     drives=True,
 )
+
+
+class DeltaSettings(Settings, frozen=True, kw_only=True):
+    """Settings of `delta`."""
+
+    speed: Annotated[
+        float,
+        number("(0, 10000]", "Delta, half the normal speed that a contact of a pair adds, in a/T."),
+    ]
+
+
+class Delta(NamedTuple):
+    """Contacts of pairs gain the normal speed 2 Delta, as in a monolayer that is shaken."""
+
+    speed: float
+
+
+@jit
+def speed_gain(delta, account):
+    """Return the speed 2 Delta that contacts of pairs add to the normal speed of parting.
+
+    Hook `speed_gain` (kernel.hooks), which does without the account.
+    """
+    return 2.0 * delta.speed
+
+
+register(Delta, DeltaSettings, speed_gain=speed_gain, drives=True)

@@ -42,6 +42,9 @@ class Hooks(NamedTuple):
     of particles that spin; beta is the result of the effects before, r and speed as above,
     `slip_velocity` the tangential relative velocity of the surfaces, a vector, and `pair` the
     particles.Pair. The state is no argument, so the result depends on ratios of velocities only"""
+    speed_gain: Callable | None = None
+    """(effect, account) -> speed that a contact of a pair adds to the normal speed r |g_n| with
+    which the particles part; the energy is entered in the effect's account"""
     after_contact: Callable | None = None
     """(effect, account, state, i, time): record that particle i has had a contact"""
     observe_contact: Callable | None = None
@@ -145,6 +148,15 @@ def acceleration(effects):
     for hook in active(effects, "acceleration"):
         g = hook.function(effects[hook.effect_index], hook.account)
     return g
+
+
+@jit
+def speed_gain(effects):
+    """Return the speed that contacts of pairs add to the normal speed of parting; None without."""
+    gain = None
+    for hook in active(effects, "speed_gain"):
+        gain = hook.function(effects[hook.effect_index], hook.account)
+    return gain
 
 
 @jit

@@ -199,7 +199,9 @@ def _working_accounts(scene):
     """
     effects = scene.effects
     working = [
-        hook for hook_name in ("resolve", "transfer") for hook in hooks.active(effects, hook_name)
+        hook
+        for hook_name in ("resolve", "transfer", "speed_gain")
+        for hook in hooks.active(effects, hook_name)
     ]
     ranks = {effects._fields[hook.effect_index]: hook.account for hook in working}
     return dict(sorted(ranks.items(), key=lambda item: item[1])) | {
