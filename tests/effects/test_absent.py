@@ -158,7 +158,8 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     }
     assert bool(unsubtracted) == bool(moving & FLOWS)
     assert ("inertia" in point.attributes) == ("spin" in effects)
-    sources = [name for name in WORK if name in effects]
+    sources = ["gravity"] if "direction" in KERNELS[kernel]["effects"].get("gravity", {}) else []
+    sources += [name for name in WORK if name in effects]
     assert point.variables["source"] == [*sources, "contacts"]
     assert point.variables["energy_imbalance"] < 1e-12
 

@@ -29,7 +29,8 @@ from roughgas.effects.contacts import (
     Friction,
     Spin,
 )
-from roughgas.effects.drives import Delta, Gravity, Shear, Thermostat
+from roughgas.effects.drives import Delta, Shear, Thermostat
+from roughgas.effects.gravity import Gravity
 from roughgas.effects.paths import Paths
 from roughgas.effects.restitution import (
     ContactTime,

@@ -1,4 +1,4 @@
-"""Effects that drive all particles: gravity, shear, random kicks, and the Delta model.
+"""Effects that drive all particles: shear, random kicks, and the Delta model.
 
 Shear through Lees-Edwards boundaries. The box is periodic; its image above (along the second axis)
 moves along the first axis at the velocity U, the image below at -U. A particle that leaves at the
@@ -44,30 +44,6 @@ from roughgas.kernel.particles import (
     spin_mass_of,
     spin_of,
 )
-
-
-class GravitySettings(Settings, frozen=True, kw_only=True):
-    """Settings of `gravity`."""
-
-    acceleration: Annotated[float, number("[1e-06, 1e+06]", "g, in a/T^2.")]
-
-
-class Gravity(NamedTuple):
-    """Uniform gravity along the last axis, downwards."""
-
-    acceleration: float
-
-
-@jit
-def acceleration(gravity, account):
-    """Return g, the downward acceleration along the last axis, in a/T^2.
-
-    Hook `acceleration` (kernel.hooks), which does without the account.
-    """
-    return gravity.acceleration
-
-
-register(Gravity, GravitySettings, acceleration=acceleration)
 
 
 class ShearSettings(Settings, frozen=True, kw_only=True):
@@ -116,7 +92,7 @@ def offset(shear, account, base):
 
 @jit
 def transfer(shear, account, state, work):
-    """Enter the work of the shear where particles, or their partners, are replaced by other images.
+    """Enter the work of a drive where particles, or their partners, are replaced by other images.
 
     Hook `transfer` (kernel.hooks); `account` is the index of the effect's account in the ledger.
     """

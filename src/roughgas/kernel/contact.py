@@ -218,8 +218,8 @@ def _with_speed_gain(gain, v, n, r):
 def _book_speed_gain(gain, effects, ledger, mass, reflected):
     """Enter the energy due to the speed gain of a contact in its effect's account of the ledger.
 
-    So far it is in the contacts' account. The normal speed of parting is `gain` - `reflected`, where
-    `reflected` is r g_n; `gain` is None without such an effect. `mass` is twice the reduced mass.
+    So far it is in the contacts' account. The normal speed of parting is `gain` - `reflected`, with
+    `reflected` = r g_n; `gain` is None without such an effect. `mass` is twice the reduced mass.
     """
     for hook in active(effects, "speed_gain"):
         energy = 0.25 * mass * gain * (gain - 2.0 * reflected)

@@ -29,7 +29,7 @@ class Hooks(NamedTuple):
     """
 
     acceleration: Callable | None = None
-    """(effect, account) -> downward acceleration along the last axis"""
+    """(effect, account) -> acceleration along each axis, None where it vanishes"""
     image_shift: Callable | None = None
     """(effect, account, state) -> (offset, velocity) of the image above along the first axis,
     at the clock's base"""
@@ -143,11 +143,11 @@ def displacement(effect, time):
 
 @jit
 def acceleration(effects):
-    """Return the downward acceleration along the last axis; None without gravity."""
-    g = None
+    """Return the acceleration along each axis, None where it vanishes; None without gravity."""
+    components = None
     for hook in active(effects, "acceleration"):
-        g = hook.function(effects[hook.effect_index], hook.account)
-    return g
+        components = hook.function(effects[hook.effect_index], hook.account)
+    return components
 
 
 @jit

@@ -229,14 +229,14 @@ class RateEquations:
 
         It is limited by the diffusion to the wall.
         """
-        T_tr, gravity = float(self.T_tr[0]), self.scene.effects.gravity
-        if isinstance(wall, Floor) and gravity is not None:
-            return floor_hit_frequency(T_tr, gravity.acceleration)
+        T_tr, effects = float(self.T_tr[0]), self.scene.effects
+        if isinstance(wall, Floor):
+            return floor_hit_frequency(T_tr, -effects.gravity.along[wall.axis])
         length = self.state.lengths[wall.axis]
         if math.isinf(length):  # a lid above an open box
             return 0.0
         hits = wall_hit_frequency(T_tr, length)
-        if gravity is not None:  # shaking mixes a bed
+        if effects.floor is not None:  # shaking mixes a bed
             return hits
         return 1.0 / (1.0 / hits + 1.0 / viscous_decay(T_tr, self.state.frequency, 2.0 * length))
 
