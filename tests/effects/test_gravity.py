@@ -118,12 +118,12 @@ def test_in_a_bath_the_gas_drifts_at_its_terminal_velocity():
 
     Its velocity has the variance T/(N m) and the correlation time 1/gamma. Within 4 sigma.
     """
-    drag, interval, number, time = 0.5, 1.0, 100, 2000.0
+    drag, interval, number, time = 0.5, 1.0, 100, 4000.0
     bath = {"drag": drag, "temperature": 1.0, "interval": interval}
     force = {"acceleration": 0.4, "direction": [1.0, 0.0]}
     scene, state = begin(periodic({"langevin": bath, "gravity": force}), 1.0, -1.0, 6)
     run(state, scene, 1, interval=30.0)
-    rows = run(state, scene, 4000, interval=time / 4000)
+    rows = run(state, scene, 8000, interval=time / 8000)
     error = math.sqrt(2.0 / (number * drag * time))
     terminal = 0.4 * interval / 2.0 / math.tanh(drag * interval / 2.0)
     assert abs(rows["p_x"].mean() / number - terminal) < 4.0 * error < 0.02 * terminal
@@ -134,8 +134,8 @@ def test_in_a_bath_the_gas_drifts_at_its_terminal_velocity():
     assert imbalance(after.ledger - before.ledger, after.energy - before.energy) < 1e-12
 
 
-LENGTH, WIDTH, BULK = 60.0, 40.0, 12.0
-FORCE, PACKING = 0.004, 0.2
+LENGTH, WIDTH, BULK = 60.0, 40.0, 15.0
+FORCE, PACKING = 0.008, 0.2
 
 
 def bulk_flow(blocks, snapshots):
@@ -169,7 +169,7 @@ def test_flow_in_a_channel_is_the_parabola_of_the_viscosity():
 
     To 4 % for the Enskog viscosity, slip and heating, and 4 sigma over blocks.
     """
-    _, bend, T, particles = bulk_flow(20, 500)
+    _, bend, T, particles = bulk_flow(20, 1000)
     density = particles.mean() / (2.0 * BULK * LENGTH)
     viscosity = theory.shear_viscosity(T.mean(), 0.0, density * math.pi)
     expected = density * FORCE / (2.0 * viscosity)

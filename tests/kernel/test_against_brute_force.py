@@ -201,7 +201,7 @@ CASES = {  # experiment, r, beta, seed
         1,
     ),
     "chute": (settings("chute", 12, [12, "open"]), 0.9, 0.2, 1),
-    "species, chute": (of_species("chute", 12, [14, "open"]), 0.9, 0.2, 1),
+    "species, chute": (of_species("chute", 12, [14, "open"]), 0.9, 0.2, 2),
     "tilted bed": (closed(TILTED | SIDES, [12, "open"]), 0.9, 0.2, 1),
     "tilted bed between equal walls": (closed(TILTED | WALLS, [12, "open"]), 0.9, 0.2, 1),
     "channel": (closed(CHANNEL, [12, 14]), 0.95, 0.2, 1),

@@ -231,6 +231,7 @@ class RateEquations:
         """
         T_tr, effects = float(self.T_tr[0]), self.scene.effects
         if isinstance(wall, Floor):
+            assert effects.gravity is not None
             return floor_hit_frequency(T_tr, -effects.gravity.along[wall.axis])
         length = self.state.lengths[wall.axis]
         if math.isinf(length):  # a lid above an open box

@@ -466,10 +466,10 @@ def _vertical_share(gas, rows, translational, per_period):
     """Return the share of vertical motion in the translational energy of a bed, with its errors.
 
     It is averaged over the last samples of `rows`, whose E_trans is `translational` (samples,);
-    `per_period` is the number of samples in a period of the drive. Without a floor the result is
+    `per_period` is the number of samples in a period of the drive. Without gravity the result is
     empty.
     """
-    if gas.scene.effects.floor is None:
+    if gas.scene.effects.gravity is None:
         return {}
     window = {name: values[-len(translational) :] for name, values in rows.items()}
     return vertical_share(window, translational, gas.particles, per_period)
