@@ -49,6 +49,7 @@ WALLS = {"walls": {"restitution": 1, "roughness": 1}}
 SHEAR = {"shear": {"velocity": 2}}
 HEAT = {"thermostat": {"power": 1, "spin_share": 0.5, "interval": 0.5}}
 LID = SPIN | {"bottom_wall": {}}
+BOX = LID | {"lid": {}, "left_wall": {}, "right_wall": {}}
 POWER = {"speed": 1.0, "exponent": 0.75, "least": 0.7}
 TABLE = settings("tabulated bed")["effects"]["restitution_table"]
 TIMED = {"kind": "steady", "equilibrate": 20.0, "measure": 20.0, "sample_every": 1.0}
@@ -97,6 +98,16 @@ def scene(effects, box=None, beta=None, particles=20, **settings_beside):
     chosen = {"particles": particles, "box": list(box), "effects": effects} | settings_beside
     build(chosen, 0.9, beta)
     check(chosen)
+
+
+def fall(*direction):
+    """Settings of gravity in a direction."""
+    return {"gravity": {"acceleration": 1.0, "direction": [*direction]}}
+
+
+def scheduled(effects, schedule):
+    box = {"particles": 10, "box": [12.5, 12.5], "effects": effects}
+    protocols.check_experiment(box | {"schedule": schedule})
 
 
 def bath(**langevin):

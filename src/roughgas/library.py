@@ -125,7 +125,7 @@ def simulate(
         Number N of particles.
     box
         Lengths of the box in particle radii a, two for disks and three for spheres; the last one is
-        vertical, and ``"open"`` if there is gravity.
+        vertical, and ``"open"`` above a floor without a lid.
     packing
         Volume fraction of the particles, in place of these lengths. The box keeps its shape, or has
         the proportions in `box`, such as ``(1, 1, 1)``; by default it is a square.

@@ -27,9 +27,9 @@ def snapshot(state, scene):
     elapsed = present - trajectory[:, -1]
     position += velocity * elapsed[:, None]
     if scene.effects.gravity is not None:
-        g = scene.effects.gravity.acceleration
-        position[:, -1] -= 0.5 * g * elapsed**2
-        velocity[:, -1] -= g * elapsed
+        for axis, g in scene.effects.gravity.along.items():
+            position[:, axis] += 0.5 * g * elapsed**2
+            velocity[:, axis] += g * elapsed
     spin = None if state.spin is None else state.spin[order]
     time, drive = state.clock[BASE] + present, drive_of(state, order)
     word = 0 if state.random is None else int(state.random[0])

@@ -50,7 +50,7 @@ class Contacts:
         v_n = (v @ n) * n
         mass, moment = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
         energies_before = self.energies[[i, j]]
-        impulse = (1.0 + r) * v_n / (1.0 / mass).sum()
+        impulse = ((1.0 + r) * v_n - 2.0 * world.delta * n) / (1.0 / mass).sum()
         if world.q is not None:
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
             self._add_contact_sums(v_t, v_r, mass, moment)

@@ -65,6 +65,13 @@ KERNELS = {
     ),
     "heated spheres": _kernel([12, 12, 12], _SPHERES, _HEAT, _FRICTION, _ALL_SUMS),
     "bath": _kernel([100, 100], _DISKS, {"langevin": _BATH}, _PATHS),
+    "monolayer": _kernel([100, 100], _DISKS, {"delta": {"speed": 0.5}}, _FRICTION),
+    "chute": _kernel(
+        [50, "open"],
+        _BED,
+        {"gravity": {"acceleration": 1.0, "direction": [0.5, -1.0]}},
+        {"floor": _SINE | {"restitution": 0.9, "roughness": 0.5}},
+    ),
     "viscoelastic": _kernel(
         [100, 100],
         _DISKS,
@@ -154,8 +161,9 @@ def scene_of(experiment, r, beta):
         mu=effects.get("friction", {}).get("mu"),
         thermostat=thermostat
         and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
+        delta=effects.get("delta", {}).get("speed", 0.0),
         bath=bath and bath | {"noise": noisy},
-        gravity=effects.get("gravity", {}).get("acceleration", 0.0),
+        acceleration=acceleration_of(effects.get("gravity"), len(periods)),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
         walls=walls and (width, walls["restitution"], walls["roughness"]),
@@ -173,6 +181,14 @@ def scene_of(experiment, r, beta):
         threshold=threshold and (threshold["speed"], threshold["restitution"]),
     )
     return build(experiment, r, beta), world
+
+
+def acceleration_of(gravity, dimension):
+    """Acceleration along each axis by the settings of gravity; empty for None."""
+    if gravity is None:
+        return ()
+    direction = np.array(gravity.get("direction", [0.0] * (dimension - 1) + [-1.0]), float)
+    return tuple(gravity["acceleration"] * direction / np.sqrt(direction @ direction))
 
 
 def begin(experiment, r, beta, seed=0):

@@ -86,13 +86,7 @@ class Side(NamedTuple):
         """
         if self.moves_along_normal:
             return self._wait_for_stroke(gap, speed, weight, time, limit)
-        if speed >= 0.0 and weight <= 0.0:
-            return math.inf
-        gap = max(0.0, gap)
-        if weight == 0.0:
-            return gap / -speed
-        square = speed * speed + 2.0 * weight * gap
-        return math.inf if square < 0.0 else (speed + math.sqrt(square)) / weight
+        return resting_wait(gap, speed, weight)
 
     def _wait_for_stroke(self, gap, speed, weight, time, limit):
         if gap - self.shift(time) <= 1e-12 and speed < self.speed(time):
@@ -102,6 +96,17 @@ class Side(NamedTuple):
             return gap + speed * wait - weight * wait**2 / 2.0 - self.shift(time + wait)
 
         return first_touch(distance, limit)
+
+
+def resting_wait(gap, speed, weight):
+    """Time until a particle meets a wall that does not move along its normal; inf if never."""
+    if speed >= 0.0 and weight <= 0.0:
+        return math.inf
+    gap = max(0.0, gap)
+    if weight == 0.0:
+        return gap / -speed
+    square = speed * speed + 2.0 * weight * gap
+    return math.inf if square < 0.0 else (speed + math.sqrt(square)) / weight
 
 
 def sides_of(effects, box):

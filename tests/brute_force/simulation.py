@@ -20,7 +20,7 @@ from brute_force.formulas import (
     meeting_times,
 )
 from brute_force.kicks import Bath, Kicks, SplitMix
-from brute_force.sides import thermal_velocity_and_spin
+from brute_force.sides import resting_wait, thermal_velocity_and_spin
 from brute_force.world import Event, Snapshot
 
 # Strokes of a period of the floor: (begin, end) in periods, (height at the begin, at the end) in
@@ -189,10 +189,9 @@ class BruteForce(Contacts):
                 yield self._floor_wait(i, limit, *floor), "floor", i, -1
             if world.walls:
                 x, v, radius = self.x[i, 0], self.v[i, 0], self.radius[i]
-                if v < 0.0:
-                    yield max(0.0, (radius - x) / v), "left", i, -1
-                if v > 0.0:
-                    yield max(0.0, (world.walls[0] - radius - x) / v), "right", i, -1
+                weight = -world.fall(1.0)[0]
+                yield resting_wait(x - radius, v, weight), "left", i, -1
+                yield resting_wait(world.walls[0] - radius - x, -v, -weight), "right", i, -1
             for side in world.sides:
                 yield self._side_wait(side, i, limit), side.name, i, -1
 
@@ -200,7 +199,7 @@ class BruteForce(Contacts):
         """Time until particle i meets a wall."""
         gap = side.inwards * (self.x[i, side.axis] - side.at) - self.radius[i]
         speed = side.inwards * self.v[i, side.axis]
-        weight = side.inwards * self.world.gravity if side.axis == self.dimension - 1 else 0.0
+        weight = -side.inwards * self.world.fall(1.0)[side.axis]
         return side.wait(gap, speed, weight, self.time, limit)
 
     def _floor_wait(self, i, limit, level, speed):
@@ -218,9 +217,8 @@ class BruteForce(Contacts):
 
     def _move(self, wait):
         """Move all particles in free flight."""
-        self.x += self.v * wait
-        self.x[:, -1] -= 0.5 * self.world.gravity * wait * wait
-        self.v[:, -1] -= self.world.gravity * wait
+        self.x += self.v * wait + 0.5 * self.world.fall(wait) * wait
+        self.v += self.world.fall(wait)
         self.time += wait
         self._fold()
 

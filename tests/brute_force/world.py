@@ -19,7 +19,8 @@ class World(NamedTuple):
     mu: float | None = None  # coefficient of friction; None: contacts never slide
     thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
     bath: dict | None = None  # settings of a Langevin bath, and whether it has noise
-    gravity: float = 0.0  # along the last axis
+    delta: float = 0.0  # half the normal speed that contacts of pairs gain
+    acceleration: tuple[float, ...] = ()  # of gravity along each axis; empty without gravity
     floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
     shaken: tuple[float, float] | None = None  # amplitude, period of these walls' displacement
@@ -35,6 +36,15 @@ class World(NamedTuple):
     threshold: tuple[float, float] | None = (
         None  # speed, and restitution that slower contacts have at least
     )
+
+    @property
+    def gravity(self):
+        """Downward acceleration along the last axis."""
+        return -self.acceleration[-1] if self.acceleration else 0.0
+
+    def fall(self, time):
+        """Velocity (D,) that gravity gives a particle at rest in a time."""
+        return np.array(self.acceleration or [0.0] * len(self.box)) * time
 
 
 class Snapshot(NamedTuple):

@@ -21,7 +21,7 @@ from roughgas.kernel import mathematics
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
-DRIVES = {"floor", "shaken_walls", "shear", "thermostat", "langevin"}
+DRIVES = {"floor", "shaken_walls", "shear", "thermostat", "langevin", "delta"}
 DRIVES |= {"bottom_wall", "front_wall"}
 FLOWS = {"shear", "bottom_wall", "front_wall"}  # walls of sides that may slide across the flow
 SMALL_BOXES = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
@@ -47,7 +47,7 @@ def compiled_without(folder, kernel, *effects):
 
 
 EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres", "viscoelastic", "tabulated bed"]
-EVERY_EFFECT += ["bath", "container", "closed spheres", "layer"]
+EVERY_EFFECT += ["bath", "monolayer", "container", "closed spheres", "layer"]
 """Kernels that together have every effect; `smooth` has none."""
 
 
@@ -135,7 +135,7 @@ OF_CONTACTS = {f"R_collisional{end}" for end in ("", "_stderr", "_dof", "_ci95")
 }
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
 # effects that do work have a source in the energy balance
-WORK = ("floor", "walls", "shaken_walls", *SIDES, "shear", "thermostat", "langevin")
+WORK = ("floor", "walls", "shaken_walls", *SIDES, "shear", "thermostat", "langevin", "delta")
 
 
 @pytest.mark.parametrize("kernel", kernels())
@@ -158,7 +158,8 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     }
     assert bool(unsubtracted) == bool(moving & FLOWS)
     assert ("inertia" in point.attributes) == ("spin" in effects)
-    sources = [name for name in WORK if name in effects]
+    sources = ["gravity"] if "direction" in KERNELS[kernel]["effects"].get("gravity", {}) else []
+    sources += [name for name in WORK if name in effects]
     assert point.variables["source"] == [*sources, "contacts"]
     assert point.variables["energy_imbalance"] < 1e-12
 

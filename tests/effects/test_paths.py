@@ -55,7 +55,7 @@ class BruteForcePath:
 
     def __call__(self, duration):
         self.displacement += self.brute.v * duration
-        self.displacement[:, -1] -= 0.5 * self.brute.world.gravity * duration**2
+        self.displacement += 0.5 * self.brute.world.fall(duration) * duration
         self.rotation += self.brute.w[:, 2] / self.brute.radius * duration
         self.move(duration)
 

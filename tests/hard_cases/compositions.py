@@ -48,6 +48,7 @@ PARAMETERS = {
         "temperature": st.just(1.0),
         "spin_drag": st.sampled_from([0.0, 0.5]),
     },
+    "delta": {"speed": st.floats(0.01, 1.0)},
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
     "viscoelastic": {"speed": st.floats(0.1, 10.0)},
     "power_law": {

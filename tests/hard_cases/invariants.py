@@ -25,14 +25,15 @@ def beyond_cone(before, after, pair, world):
     """(|J_t| - mu |J_n|)/|J| of the last contact of a pair, 0 if its impulse is inside the cone."""
     i, j = pair
     impulse = after.velocity[i] - before.velocity[i]
-    impulse[-1] += world.gravity * (after.time - before.time)
+    fallen = world.fall(after.time - before.time)
+    impulse -= fallen
     x = after.position[i] - after.position[j]
     lengths = np.array([side or 1e300 for side in world.box])  # no images along an open axis
     n = x - lengths * np.round(x / lengths)
     n /= np.linalg.norm(n)
     impulse_size = np.linalg.norm(impulse)
     # velocities are rounded, which matters for weak impulses
-    speed = np.abs(before.velocity[[i, j]]).max() + world.gravity * (after.time - before.time)
+    speed = np.abs(before.velocity[[i, j]]).max() + np.abs(fallen).max()
     normal = impulse @ n
     tangential = np.linalg.norm(impulse - normal * n)
     mu = brute_force_from(world, before).material(i, j)[2]

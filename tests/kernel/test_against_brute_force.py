@@ -42,6 +42,8 @@ PISTONS = {
     "lid": SHAKEN | {"wave": "triangle", "period": 1.0},
 }
 SPIN_DRAG = {"interval": 5.0, "drag": 0.0, "temperature": 0.0, "spin_drag": 0.2}
+SLOW = {"speed": 0.2, "restitution": 1.0}
+MONOLAYER = {"delta": {"speed": 0.3}, "threshold": SLOW}
 DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
@@ -81,6 +83,19 @@ def between_walls(kernel, walls, **effects):
 
 SLOW_CONTACTS = {"viscoelastic": {"speed": 50.0}, "threshold": {"speed": 0.2}}
 CONTACT_TIME = {"contact_time": {"duration": 0.05}}
+TILTED = BED | {"gravity": {"acceleration": 1.0, "direction": [-0.5, -1.0]}}
+WALLS = {"walls": {"restitution": 0.8, "roughness": 0.3}}
+SIDES = {
+    "left_wall": {"restitution": 0.8, "roughness": 0.3},
+    "right_wall": {"temperature": 2.0},
+}
+CHANNEL = {
+    "spin": {"inertia": 0.5},
+    "gravity": {"acceleration": 0.5, "direction": [1.0, 0.0]},
+    "bottom_wall": {"restitution": 0.8, "roughness": 0.5},
+    "lid": {"temperature": 2.0},
+}
+FALLING = {"spin": {"inertia": 0.4}, "gravity": {"acceleration": 0.3, "direction": [1, -2, 2]}}
 CASES = {  # experiment, r, beta, seed
     "gas": (settings("gas", 8, [12, 12]), 0.98, 0.2, 1),
     "smallest box": (settings("gas", 3, [4.01, 8.0]), 0.99, 0.5, 2),
@@ -150,6 +165,9 @@ CASES = {  # experiment, r, beta, seed
         *(0.98, -0.5, 2),
     ),
     "species, bath": (of_species("bath", 12, [16, 16]), 0.9, 0.2, 17),
+    "monolayer": (settings("monolayer", 8, [12, 12]), 0.9, 0.4, 1),
+    "species, monolayer": (of_species("monolayer", 12, [16, 16]), 0.9, 0.2, 17),
+    "monolayer of smooth spheres": (closed(MONOLAYER, [8, 7, 9]), 0.8, -1.0, 3),
     "drag": (closed({"spin": {"inertia": 0.5}, "langevin": DRAG}, [14, 16]), 1.0, 0.9, 1),
     "species": (of_species("gas", 8, [14, 14]), 0.98, 0.2, 1),
     "species, smallest box": (of_species("gas", 3, [6.02, 9.0]), 0.99, 0.5, 2),
@@ -182,6 +200,12 @@ CASES = {  # experiment, r, beta, seed
         0.2,
         1,
     ),
+    "chute": (settings("chute", 12, [12, "open"]), 0.9, 0.2, 1),
+    "species, chute": (of_species("chute", 12, [14, "open"]), 0.9, 0.2, 2),
+    "tilted bed": (closed(TILTED | SIDES, [12, "open"]), 0.9, 0.2, 1),
+    "tilted bed between equal walls": (closed(TILTED | WALLS, [12, "open"]), 0.9, 0.2, 1),
+    "channel": (closed(CHANNEL, [12, 14]), 0.95, 0.2, 1),
+    "falling spheres": (closed(FALLING, [8, 9, 10]), 0.95, 0.2, 1),
     "closed spheres": (settings("closed spheres", 12, [8, 9, 10]), 0.95, 0.2, 1),
 }
 RARE = {"sheared spheres", "bed of spheres", "tabulated bed", "friction of spheres"}
@@ -191,6 +215,8 @@ RARE |= {"viscoelastic gas", "slow viscoelastic gas"}
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
 RARE |= {"species, shaken walls", "species, spheres", "species, bath", "species, kicks", "drag"}
+RARE |= {"species, monolayer", "monolayer of smooth spheres", "species, chute", "tilted bed"}
+RARE |= {"tilted bed between equal walls", "channel", "falling spheres"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),

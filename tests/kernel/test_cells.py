@@ -13,6 +13,11 @@ from roughgas.kernel.particles import position_and_velocity
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, PREDICTIONS
 
 LISTS = {"neighbours": "lists"}
+FALLING = settings("smooth", 24, [17, 19])
+FALLING["effects"] = {
+    "spin": {"inertia": 0.5},
+    "gravity": {"acceleration": 0.3, "direction": [2, 1]},
+}
 CASES = {
     # experiment, r, beta, seed
     "gas": (settings("gas", 24, [17, 19]), 0.98, 0.2, 1),
@@ -28,6 +33,9 @@ CASES = {
     ),
     "bed between rough walls": (settings("walled", 40, [20, "open"]), 0.8, 0.2, 7),
     "bed on lists": (settings("walled", 40, [20, "open"]) | LISTS, 0.8, 0.2, 7),
+    "chute": (settings("chute", 40, [20, "open"]), 0.8, 0.2, 7),
+    "chute on lists": (settings("chute", 40, [20, "open"]) | LISTS, 0.8, 0.2, 7),
+    "falling gas": (FALLING, 0.9, 0.2, 1),
     "spheres": (settings("spheres", 40, [17, 17, 17]), 0.98, 0.2, 8),
     "spheres on lists": (settings("spheres", 80, [20, 20, 20]) | LISTS, 0.98, 0.2, 8),
 }

@@ -14,7 +14,7 @@ from project import ROOT
 from kernel.test_cells import sheared_or_slow
 from roughgas.compiling.jit import jit
 from roughgas.effects import Effects
-from roughgas.effects.drives import Gravity
+from roughgas.effects.gravity import Gravity
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks, layout
 from roughgas.kernel.hooks import active
@@ -148,8 +148,8 @@ def velocity_after_gravity(effects, v):
     """Velocity after unit time under all effects with an acceleration."""
     g = 0.0
     for hook in active(effects, "acceleration"):
-        g += hook.function(effects[hook.effect_index], hook.account)
-    return v - g if active(effects, "acceleration") else v
+        g += hook.function(effects[hook.effect_index], hook.account)[1]
+    return v + g if active(effects, "acceleration") else v
 
 
 @jit
@@ -182,7 +182,7 @@ def test_conditions_on_types_are_decided_when_compiled():
     assert from_python(aliases)(OUTER, 0.5) == aliases(OUTER, 0.5) == 9.5
     (written,) = aliases.specialised.values()
     assert len(written.body) == 5  # statements after the decided return are cut
-    for effects in (Effects(), Effects(gravity=Gravity(2.0))):
+    for effects in (Effects(), Effects(gravity=Gravity((None, -2.0)))):
         assert from_python(velocity_after_gravity)(effects, 3.0) == velocity_after_gravity(
             effects, 3.0
         )

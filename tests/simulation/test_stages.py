@@ -74,6 +74,10 @@ CHANGES = {  # (experiment, changes of its effects)
     "interval of kicks": (HEATED, {"thermostat": {"interval": 0.2}}),
     "bath": (settings("bath", 20, [20, 20]), {"langevin": {"drag": 1.0, "interval": 0.3}}),
     "gravity": (BED, {"gravity": {"acceleration": 2.5}}),
+    "direction of gravity": (
+        settings("chute", 20, [12.5, "open"]),
+        {"gravity": {"acceleration": 2.5, "direction": [-1.0, -1.0]}},
+    ),
     "floor": (BED, {"floor": {"amplitude": 3.0, "restitution": 0.9}}),
     "shear": (settings("sheared", 20, [20, 20]), {"shear": {"velocity": 3.7}}),
     "walls": (

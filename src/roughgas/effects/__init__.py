@@ -30,7 +30,8 @@ from roughgas.effects.contacts import (
     Friction,
     Spin,
 )
-from roughgas.effects.drives import Gravity, Shear, Thermostat
+from roughgas.effects.drives import Delta, Shear, Thermostat
+from roughgas.effects.gravity import Gravity
 from roughgas.effects.paths import Paths
 from roughgas.effects.restitution import (
     ContactTime,
@@ -70,6 +71,7 @@ class Effects(NamedTuple):
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     langevin: Langevin | None = None
+    delta: Delta | None = None
     friction: Friction | None = None
     viscoelastic: Viscoelastic | None = None
     power_law: PowerLaw | None = None

@@ -1,4 +1,4 @@
-"""Effects on all particles: gravity, shear, and random kicks.
+"""Effects that drive all particles: shear, random kicks, and the Delta model.
 
 Shear through Lees-Edwards boundaries. The box is periodic; its image above (along the second axis)
 moves along the first axis at the velocity U, the image below at -U. A particle that leaves at the
@@ -18,6 +18,13 @@ translation and s to rotation. Units: a = m = T = 1.
 
 Where particles differ, their momenta change by opposite amounts: the mean energy of a kick is
 independent of the pair, and particle i receives the share m_j/(m_i + m_j), larger if it is lighter.
+
+The Delta model is a monolayer that is shaken from below, without its third axis: vertical motion
+passes energy to horizontal motion in contacts. R. Brito, D. Risso & R. Soto, Phys. Rev. E 87,
+022209 (2013): a pair that approaches at the normal speed g parts at r g + 2 Delta. A contact adds
+(m/4) [(r^2 - 1) g^2 + 4 r Delta g + 4 Delta^2] to the energy. The first term is the contacts' loss,
+the rest the drive's gain; where masses differ, m is twice the reduced mass. With Coulomb friction a
+contact slides where sticking would take more than mu times the whole normal impulse.
 """
 
 import math
@@ -37,30 +44,6 @@ from roughgas.kernel.particles import (
     spin_mass_of,
     spin_of,
 )
-
-
-class GravitySettings(Settings, frozen=True, kw_only=True):
-    """Settings of `gravity`."""
-
-    acceleration: Annotated[float, number("[1e-06, 1e+06]", "g, in a/T^2.")]
-
-
-class Gravity(NamedTuple):
-    """Uniform gravity along the last axis, downwards."""
-
-    acceleration: float
-
-
-@jit
-def acceleration(gravity, account):
-    """Return g, the downward acceleration along the last axis, in a/T^2.
-
-    Hook `acceleration` (kernel.hooks), which does without the account.
-    """
-    return gravity.acceleration
-
-
-register(Gravity, GravitySettings, acceleration=acceleration)
 
 
 class ShearSettings(Settings, frozen=True, kw_only=True):
@@ -109,7 +92,7 @@ def offset(shear, account, base):
 
 @jit
 def transfer(shear, account, state, work):
-    """Enter the work of the shear where particles, or their partners, are replaced by other images.
+    """Enter the work of a drive where particles, or their partners, are replaced by other images.
 
     Hook `transfer` (kernel.hooks); `account` is the index of the effect's account in the ledger.
     """
@@ -254,3 +237,30 @@ register(
     random=True,
     drives=True,
 )
+
+
+class DeltaSettings(Settings, frozen=True, kw_only=True):
+    """Settings of `delta`."""
+
+    speed: Annotated[
+        float,
+        number("(0, 10000]", "Delta, half the normal speed that a contact of a pair adds, in a/T."),
+    ]
+
+
+class Delta(NamedTuple):
+    """Contacts of pairs gain the normal speed 2 Delta, as in a monolayer that is shaken."""
+
+    speed: float
+
+
+@jit
+def speed_gain(delta, account):
+    """Return the speed 2 Delta that contacts of pairs add to the normal speed of parting.
+
+    Hook `speed_gain` (kernel.hooks), which does without the account.
+    """
+    return 2.0 * delta.speed
+
+
+register(Delta, DeltaSettings, speed_gain=speed_gain, drives=True)

@@ -23,9 +23,11 @@ RESERVED = frozenset({"contacts", "schedule", "species", "stages"})
 """Names with another meaning in settings, sweeps or energy balances."""
 PASSIVE_HOOKS = frozenset({*OBSERVING_HOOKS, "sums"})
 """Hooks of a passive effect."""
-PACKAGE_HOOKS = frozenset({"acceleration", "image_shift", "transfer", "observe_flight"})
-"""Hooks whose effects the package refers to by name: positions depend on gravity and shear, and
-paths are counted once."""
+PACKAGE_HOOKS = frozenset(
+    {"acceleration", "image_shift", "transfer", "observe_flight", "speed_gain"}
+)
+"""Hooks whose effects the package refers to by name: positions depend on gravity and shear, paths
+are counted once, and contacts add the speed of a single effect."""
 
 
 def check_name(category: str, name: object, taken: bool) -> None:

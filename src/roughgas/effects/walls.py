@@ -3,9 +3,10 @@
 A wall has a side, a motion, and a material or a temperature. It is at rest, or slides along itself,
 at constant velocity or shaken; or it is shaken along its normal (motions.py): then its outermost
 position is the side of the box, and its strokes go into the gas. A floor is a wall under a gas with
-gravity, which pulls particles towards it and away from a lid; along the other axes there is no
-acceleration. Two equal walls that close both ends of the first axis are one effect, with one
-account. Motion along the wall changes the velocity of its surface, not its position.
+gravity, which pulls particles towards it and away from a lid. Gravity in another direction may pull
+towards other walls, which slow particles leave with a minimum speed, as they leave a floor. Two
+equal walls that close both ends of the first axis are one effect, with one account. Motion along
+the wall changes the velocity of its surface, not its position.
 
 Particles bounce off a material with its restitution and roughness. They leave a thermal wall, for
 any velocity before, with the velocity and spin of particles that cross a plane in a Maxwellian gas
@@ -65,8 +66,8 @@ from roughgas.kernel.particles import (
 )
 from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
 
-# Minimum normal speed relative to a shaken wall, a/T, with which particles leave it: below, they
-# could hit it infinitely often in a finite time
+# Minimum normal speed relative to a wall, a/T, with which particles leave it where it is shaken or
+# gravity pulls towards it: below, they could hit it infinitely often in a finite time
 LEAST_DEPARTURE = 1e-3
 LOW, HIGH = 0, 1  # the ends of an axis
 SIDES = {  # name -> (axis, end); -1 is the last axis
@@ -256,10 +257,16 @@ def _side(context):
     axis %= dimension
     if context.box[axis] is None:
         raise NeedsError(key, f"a length of the box along its {'last' if axis else 'first'} axis")
-    if context.name == "bottom_wall" and "gravity" in context.effects:
+    if context.name == "bottom_wall" and _gravity_is_vertical(context):
         raise InputError(key, "with gravity", "be a floor there, which may be at rest")
     slide_axis = dimension - 1 if axis == 0 else 0
     return Side(axis, 1.0 - 2.0 * end, context.box[axis] * end, slide_axis)
+
+
+def _gravity_is_vertical(context):
+    """Return whether gravity in a SceneContext has a component along the last axis."""
+    gravity = context.effects.get("gravity")
+    return gravity is not None and (gravity.direction is None or gravity.direction[-1] != 0.0)
 
 
 def _refuse_contradictions(settings, context):
@@ -291,12 +298,12 @@ def predict_wall(wall, account, state, scene, i):
     position = state.trajectory[i, side.axis]
     velocity = state.trajectory[i, dimension + side.axis]
     if side.inwards is None:
-        end = HIGH if velocity > 0.0 else LOW
-        gap = side.position - radius - position if end == HIGH else position - radius
-        return time + fall_time(gap, -abs(velocity), 0.0), end
+        gaps = position - radius, side.position - radius - position
+        delay, end = _first_of_both_ends(hooks.acceleration(scene.effects), gaps, velocity)
+        return time + delay, end
     gap = side.inwards * (position - side.position) - radius
     speed = side.inwards * velocity
-    gravity = _gravity_towards(hooks.acceleration(scene.effects), side, dimension)
+    gravity = _gravity_towards(hooks.acceleration(scene.effects), side.axis, side.inwards)
     if wall.motion is None:
         return time + fall_time(gap, speed, gravity), motions.MEETING
     # A particle that stays above all strokes until its next prediction has no event until then.
@@ -323,14 +330,32 @@ def predict_wall(wall, account, state, scene, i):
 
 
 @jit
-def _gravity_towards(gravity, side, dimension):
+def _first_of_both_ends(gravity, gaps, velocity):
+    """Return the time until a particle meets a wall of two that close the first axis, and the end.
+
+    `gaps` are its distances from the walls at both ends; `velocity` is along the axis, and
+    `gravity` as in `_gravity_towards`.
+    """
+    if gravity is None or gravity[0] is None:
+        end = HIGH if velocity > 0.0 else LOW
+        return fall_time(gaps[1] if end == HIGH else gaps[0], -abs(velocity), 0.0), end
+    low, high = fall_time(gaps[0], velocity, -gravity[0]), fall_time(gaps[1], -velocity, gravity[0])
+    return (low, LOW) if low < high else (high, HIGH)
+
+
+@jit
+def _gravity_towards(gravity, axis, inwards):
     """Return the acceleration towards a wall; 0 along an axis without gravity.
 
-    `gravity` is the downward acceleration along the last axis, or None.
+    `gravity` is the acceleration along each axis, None where it vanishes, or None; the wall closes
+    the `axis`, and its normal into the gas has the component `inwards` along it.
     """
-    if gravity is None or side.axis != dimension - 1:
-        return 0.0
-    return side.inwards * gravity
+    towards = 0.0
+    if gravity is not None:
+        for k in range(len(gravity)):
+            if gravity[k] is not None and axis == k:
+                towards = -inwards * gravity[k]
+    return towards
 
 
 @jit
@@ -345,12 +370,25 @@ def resolve_wall(wall, account, code, state, scene, i, time):
         return _leave_thermal_wall(wall, account, state, scene, i, time)
     if wall.motion is not None and law_of(wall.motion).has_limit and code == SEARCH_AGAIN:
         return NOBODY
-    normal = along_axis(scene.box, side.axis, _inwards(side, code))
+    inwards = _inwards(side, code)
+    normal = along_axis(scene.box, side.axis, inwards)
     velocity = _surface_velocity(wall, account, code, state, scene.box, time)
-    min_departure = 0.0 if wall.motion is None else LEAST_DEPARTURE
+    min_departure = _min_departure(wall, hooks.acceleration(scene.effects), inwards)
     return collide_with_wall(
         state, scene, account, i, time, material, normal, velocity, min_departure
     )
+
+
+@jit
+def _min_departure(wall, gravity, inwards):
+    """Return the minimum normal speed, a/T, with which particles leave a wall that is not thermal.
+
+    `gravity` and `inwards` are as in `_gravity_towards`. Without a minimum, an inelastic particle
+    that falls back would hit the wall infinitely often in a finite time.
+    """
+    if wall.motion is not None:
+        return LEAST_DEPARTURE
+    return LEAST_DEPARTURE if _gravity_towards(gravity, wall.side.axis, inwards) > 0.0 else 0.0
 
 
 @jit

@@ -180,14 +180,43 @@ def _exit_from(scene, now, d, u, widths):
     the sides of the cell or region. The heading is 2 * axis, plus 1 if upwards, as in
     Cells.heading.
     """
-    gravity, last = hooks.acceleration(scene.effects), len(d) - 1
-    time, up = _fall_out(gravity, d[last], u[last], 0.5 * widths[last])
+    time, up, axis = _first_exit(hooks.acceleration(scene.effects), d, u, widths)
+    return now + time, 2 * axis + int(up)
+
+
+@jit
+def _first_exit(gravity, d, u, widths):
+    """Return when d + u t + g t^2/2 leaves a box of these `widths`, whether upwards, and the axis.
+
+    The box is centred on the origin; `gravity` g is None, or the acceleration along each axis, None
+    where it vanishes.
+    """
+    last = len(d) - 1
+    time, up = _exit_along(
+        None if gravity is None else gravity[last], d[last], u[last], widths[last]
+    )
     axis = last
     for k in range(last):
-        side_time, upwards = _fly_out(d[k], u[k], 0.5 * widths[k])
+        side_time, upwards = _exit_along(
+            None if gravity is None else gravity[k], d[k], u[k], widths[k]
+        )
         if side_time < time:
             time, up, axis = side_time, upwards, k
-    return now + time, 2 * axis + int(up)
+    return time, up, axis
+
+
+@jit
+def _exit_along(g, d, u, width):
+    """Return when d + u t + g t^2/2 leaves [-`width`/2, `width`/2], and whether at the upper end.
+
+    The acceleration g is None where it vanishes.
+    """
+    if g is None:
+        return _fly_out(d, u, 0.5 * width)
+    downwards = g < 0.0  # else mirrored
+    sign = 1.0 if downwards else -1.0
+    time, up = _fall_out(-sign * g, sign * d, sign * u, 0.5 * width)
+    return time, up == downwards
 
 
 @jit
@@ -201,8 +230,6 @@ def _fly_out(d, u, half):
 @jit
 def _fall_out(gravity, d, u, half):
     """Return when d + u t - gravity t^2/2 leaves [-half, half], and whether at the upper end."""
-    if gravity is None:
-        return _fly_out(d, u, half)
     above, below = max(half - d, 0.0), max(half + d, 0.0)
     if u > 0.0 and u * u >= 2.0 * gravity * above:
         return 2.0 * above / (u + math.sqrt(u * u - 2.0 * gravity * above)), True

@@ -29,7 +29,7 @@ class Hooks(NamedTuple):
     """
 
     acceleration: Callable | None = None
-    """(effect, account) -> downward acceleration along the last axis"""
+    """(effect, account) -> acceleration along each axis, None where it vanishes"""
     image_shift: Callable | None = None
     """(effect, account, state) -> (offset, velocity) of the image above along the first axis,
     at the clock's base"""
@@ -42,6 +42,9 @@ class Hooks(NamedTuple):
     of particles that spin; beta is the result of the effects before, r and speed as above,
     `slip_velocity` the tangential relative velocity of the surfaces, a vector, and `pair` the
     particles.Pair. The state is no argument, so the result depends on ratios of velocities only"""
+    speed_gain: Callable | None = None
+    """(effect, account) -> speed that a contact of a pair adds to the normal speed r |g_n| with
+    which the particles part; the energy is entered in the effect's account"""
     after_contact: Callable | None = None
     """(effect, account, state, i, time): record that particle i has had a contact"""
     observe_contact: Callable | None = None
@@ -146,11 +149,20 @@ def displacement(effect, time):
 
 @jit
 def acceleration(effects):
-    """Return the downward acceleration along the last axis; None without gravity."""
-    g = None
+    """Return the acceleration along each axis, None where it vanishes; None without gravity."""
+    components = None
     for hook in active(effects, "acceleration"):
-        g = hook.function(effects[hook.effect_index], hook.account)
-    return g
+        components = hook.function(effects[hook.effect_index], hook.account)
+    return components
+
+
+@jit
+def speed_gain(effects):
+    """Return the speed that contacts of pairs add to the normal speed of parting; None without."""
+    gain = None
+    for hook in active(effects, "speed_gain"):
+        gain = hook.function(effects[hook.effect_index], hook.account)
+    return gain
 
 
 @jit

@@ -277,17 +277,22 @@ def path_of(trajectory, i, box):
 def free_flight(path, time, gravity):
     """Return position and velocity at `time` in free flight on a path.
 
-    The path is (position, velocity, time); `gravity` is the acceleration downwards along the last
-    axis, or None.
+    The path is (position, velocity, time); `gravity` has the acceleration along each axis, None
+    where it vanishes, or is None.
     """
     position, velocity, elapsed = path[0], path[1], time - path[2]
     moved = add_scaled(position, velocity, elapsed)
     if gravity is None:
         return moved, velocity
-    drop, fall, last = 0.5 * gravity * elapsed * elapsed, gravity * elapsed, len(position) - 1
     return (
-        tuple(moved[k] - drop if k == last else moved[k] for k in range(len(position))),
-        tuple(velocity[k] - fall if k == last else velocity[k] for k in range(len(position))),
+        tuple(
+            moved[k] if gravity[k] is None else moved[k] + 0.5 * gravity[k] * elapsed * elapsed
+            for k in range(len(position))
+        ),
+        tuple(
+            velocity[k] if gravity[k] is None else velocity[k] + gravity[k] * elapsed
+            for k in range(len(position))
+        ),
     )
 
 
@@ -328,8 +333,23 @@ def enter_box(state, scene, i, time):
         hooks.observe_flight(scene.effects, state, i, crossings, elapsed)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
+    work = _with_lift(work, hooks.acceleration(scene.effects), scene.box, landing, position)
     hooks.transfer(scene.effects, state, mass_of(state.bodies, i) * work)
     return position, velocity
+
+
+@jit
+def _with_lift(work, gravity, box, landing, position):
+    """Return the `work`, over the mass, plus the potential energy of an image in the box.
+
+    `landing` is the particle's position and `position` the image's; along periodic axes with
+    gravity they differ in height.
+    """
+    if gravity is not None:
+        for k in range(len(box)):
+            if gravity[k] is not None and box[k] is not None:
+                work += gravity[k] * (landing[k] - position[k])
+    return work
 
 
 @jit

@@ -70,8 +70,8 @@ def first_contact(path_i, path_j, box, gravity, image_shift, middle, limit, dist
     """Return the time of the first contact of two paths, and whether other images might be met.
 
     A path is (position, velocity, time), for several particles j in SIMD lanes; the time of contact
-    is inf if there is none. `gravity` acts downwards along the last axis, or is None; `distance` is
-    the contact distance, `image_shift` holds at the clock's base. Only the nearest image at time
+    is inf if there is none. `gravity` is the acceleration as in `free_flight`; `distance` is the
+    contact distance, `image_shift` holds at the clock's base. Only the nearest image at time
     `middle` can be met as long as the pair moves less than half a box, minus a diameter, from
     there: if its squared relative speed is no more than `limit`, the single_image_limit.
     """
@@ -92,7 +92,7 @@ def first_contact(path_i, path_j, box, gravity, image_shift, middle, limit, dist
 def first_contact_of_images(path_i, path_j, box, gravity, image_shift, start, end, distance):
     """Return the time of the first contact of any images of two paths in [start, end], or inf.
 
-    A path is (position, velocity, time). `gravity` acts downwards along the last axis, or is None;
+    A path is (position, velocity, time). `gravity` is the acceleration as in `free_flight`;
     `distance` is the contact distance of the pair, `image_shift` holds at the clock's base. The
     interval is bisected until in each segment only the nearest image can be met.
     """

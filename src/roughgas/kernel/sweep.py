@@ -95,7 +95,7 @@ def line_of(state, scene, i):
     """Return position and velocity of particle i at the clock's base, extrapolated from its path.
 
     They define its straight line r0 + v0 t for the sweep. Under gravity the lines hold in a frame
-    that falls freely from the clock's base on: in r(t) = r0 + v0 t - g t^2/2 the last term is
+    that falls freely from the clock's base on: in r(t) = r0 + v0 t + g t^2/2 the last term is
     common to all and drops out of relative positions. State.clock[EXTENT] is raised if needed.
     """
     start, velocity = position_and_velocity(state, scene, i, 0.0)

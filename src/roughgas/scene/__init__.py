@@ -19,6 +19,7 @@ from msgspec import to_builtins
 from roughgas import theory
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import Effects, build_effects, effects_tuple
+from roughgas.effects.gravity import BodyForce
 from roughgas.effects.settings import SceneContext
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.effects.walls import Floor, Wall
@@ -123,6 +124,7 @@ def build(experiment: SceneSettings, r: float, beta: float) -> Scene:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = closed_axes(effects)
     _check_axes(lengths, effects)
+    _check_gravity(effects)
     check_sides(effects)
     largest = 1.0 if mixture is None else mixture.largest()
     check_box(lengths, effects, largest)
@@ -226,25 +228,39 @@ def _effects(settings, lengths, r, beta, mixture):
 
 
 def _check_axes(lengths, effects):
-    """Raise InputError for open axes, gravity and floor that do not belong together."""
+    """Raise InputError for open axes and a floor that do not belong together."""
     open_axes = [k for k, length in enumerate(lengths) if length is None]
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
     if effects.gravity is None and effects.floor is not None:
         raise NeedsError("effects.floor", "gravity")
-    if effects.gravity is not None and effects.floor is None:
-        raise NeedsError("effects.gravity", "a floor")
-    if (effects.gravity is None or effects.lid is not None) == bool(open_axes):
-        legal = "be open at the top if and only if there is gravity"
+    if (effects.floor is None or effects.lid is not None) == bool(open_axes):
+        legal = "be open at the top if and only if there is a floor without a lid"
         raise InputError("box", list(lengths), legal)
 
 
+def _check_gravity(effects):
+    """Raise InputError for gravity in a direction that does not suit floor, walls or shear."""
+    gravity = effects.gravity
+    if gravity is None:
+        return
+    key, direction = "effects.gravity.direction", gravity.direction
+    if effects.floor is not None and not gravity.along.get(effects.floor.axis, 0.0) < 0.0:
+        raise InputError(key, direction, "point towards the floor")
+    if effects.shear is not None and isinstance(gravity, BodyForce):
+        raise InputError(key, direction, "be down the last axis where images slide past each other")
+    for name, wall in _side_walls(effects).items():
+        if wall.motion is not None and wall.axis in gravity.along and name != "lid":
+            legal = "be along where gravity has a component across the wall"
+            raise InputError(f"effects.{name}.shaken", "normal", legal)
+
+
 def _check_single_particle(particles, effects):
-    """Raise InputError for a single particle without gravity, or with a thermostat.
+    """Raise InputError for a single particle without a floor, or with a thermostat.
 
     `particles` is the number of particles.
     """
-    if particles == 1 and effects.gravity is None:
+    if particles == 1 and effects.floor is None:
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
     if particles == 1 and effects.thermostat is not None:
         raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")

@@ -3,8 +3,8 @@
 A motion is translation (index 0) or rotation (index 1).
 
 Each effect that does work, and the contacts, have an account in the kernel's ledger. The sum of all
-accounts equals the change of the energy, to rounding. Gravity has no account: its potential energy
-counts as translational.
+accounts equals the change of the energy, to rounding. The potential energy of gravity counts as
+translational; where gravity acts along a periodic axis, its work has an account.
 """
 
 import math
@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import NamedValues
+from roughgas.effects.gravity import Gravity
 from roughgas.kernel import hooks
 from roughgas.kernel.record import RawFrames
 from roughgas.kernel.state import EXPONENT, State
@@ -105,13 +106,18 @@ def _energy(motions: ParticleMotions, scene: Scene) -> np.ndarray:
     translational = 0.5 * np.sum(mass[:, None] * trajectory[:, dimension:-1] ** 2)
     if gravity is not None:
         # kinetic plus potential energy is constant in free flight: evaluate it at its start
-        translational += gravity.acceleration * np.sum(mass * trajectory[:, dimension - 1])
+        translational += potential_energy(gravity, mass, trajectory[:, :dimension])
     if spin is None:
         return np.array([translational, 0.0])
     assert motions.spin is not None
     share = mass if motions.inertia is None else mass * motions.inertia / spin.inertia
     rotational = 0.5 * spin.inertia * np.sum(share[:, None] * motions.spin**2)
     return np.array([translational, rotational])
+
+
+def potential_energy(gravity: Gravity, mass: np.ndarray, position: np.ndarray) -> float:
+    """Return the potential energy of particles of `mass` (N,) or (1,) at `position` (N, D)."""
+    return -sum(g * np.sum(mass * position[:, axis]) for axis, g in gravity.along.items())
 
 
 def energy_exchange(
@@ -199,7 +205,9 @@ def _working_accounts(scene):
     """
     effects = scene.effects
     working = [
-        hook for hook_name in ("resolve", "transfer") for hook in hooks.active(effects, hook_name)
+        hook
+        for hook_name in ("resolve", "transfer", "speed_gain")
+        for hook in hooks.active(effects, hook_name)
     ]
     ranks = {effects._fields[hook.effect_index]: hook.account for hook in working}
     return dict(sorted(ranks.items(), key=lambda item: item[1])) | {

@@ -56,8 +56,9 @@ def unfolded_positions_and_velocities(
         flight = velocity[..., axis] * elapsed
         position[..., axis] = flights.trajectory[..., axis] + flight
     if gravity is not None:
-        position[..., -1] -= 0.5 * gravity.acceleration * elapsed**2
-        velocity[..., -1] -= gravity.acceleration * elapsed
+        for axis, acceleration in gravity.along.items():
+            position[..., axis] += 0.5 * acceleration * elapsed**2
+            velocity[..., axis] += acceleration * elapsed
     return position, velocity
 
 

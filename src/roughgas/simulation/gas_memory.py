@@ -68,7 +68,7 @@ def gas_memory(
     if not (measured and state.frequency > 0.0):
         return GasMemory(math.inf, math.inf, math.inf)
     gas = RateEquations(scene, state, mixture, packing)
-    relaxation = gas.contacts() + gas.walls() - np.diag(gas.drag_rates())
+    relaxation = gas.contacts() + gas.walls() + np.diag(gas.speed_gain_rates() - gas.drag_rates())
     of_R = _decay_time(2.0, ratio_relaxation(relaxation, gas.heating(), gas.capacity))
     slowest = slowest_relaxation(relaxation + gas.accelerated_contacts())
     return GasMemory(
@@ -154,6 +154,18 @@ class RateEquations:
         spin_rates = np.full(np.count_nonzero(self.has_spin), 2.0 * spin_drag)
         return np.append(np.full(len(self.fraction), 2.0 * drag), spin_rates)
 
+    def speed_gain_rates(self) -> np.ndarray:
+        """Return the growth rates of the temperatures in the Delta model, (temperatures,) in 1/T.
+
+        A collision per particle adds m (Delta/D) [r (pi T_tr/m)^(1/2) + Delta] to T_tr, the more
+        the hotter the gas; in a mixture, to the T_tr of each species, as if particles were alike.
+        """
+        rates, delta = np.zeros(len(self.capacity)), self.scene.effects.delta
+        if delta is not None:
+            share = self.scene.restitution * delta.speed / self.dimension
+            rates[: len(self.fraction)] = share * np.sqrt(math.pi / self.T_tr) / 2.0
+        return self.state.frequency * rates
+
     def heating(self) -> np.ndarray:
         """Return the rates of heating of the temperatures by the drive, (temperatures,).
 
@@ -217,14 +229,15 @@ class RateEquations:
 
         It is limited by the diffusion to the wall.
         """
-        T_tr, gravity = float(self.T_tr[0]), self.scene.effects.gravity
-        if isinstance(wall, Floor) and gravity is not None:
-            return floor_hit_frequency(T_tr, gravity.acceleration)
+        T_tr, effects = float(self.T_tr[0]), self.scene.effects
+        if isinstance(wall, Floor):
+            assert effects.gravity is not None
+            return floor_hit_frequency(T_tr, -effects.gravity.along[wall.axis])
         length = self.state.lengths[wall.axis]
         if math.isinf(length):  # a lid above an open box
             return 0.0
         hits = wall_hit_frequency(T_tr, length)
-        if gravity is not None:  # shaking mixes a bed
+        if effects.floor is not None:  # shaking mixes a bed
             return hits
         return 1.0 / (1.0 / hits + 1.0 / viscous_decay(T_tr, self.state.frequency, 2.0 * length))
 

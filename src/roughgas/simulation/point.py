@@ -24,6 +24,7 @@ from roughgas.simulation.gas import Costs, Gas
 from roughgas.simulation.initial_checks import checked_initial_states
 from roughgas.simulation.initial_states import RESEED, InitialState, is_memory_of
 from roughgas.simulation.point_trackers import ContactLog, LastStates
+from roughgas.simulation.scene_switch import kernel_types
 from roughgas.simulation.simulation import Simulation
 from roughgas.simulation.steady import LACK_VARIABLE
 from roughgas.simulation.tracker import Tracker
@@ -347,13 +348,13 @@ def _collision_rate(scene, experiment):
     loss = max(loss, MIN_LOSS)
     if effects.shear is not None:
         return abs(shear_rate(scene)) * math.sqrt(2.0 / loss)
-    if effects.gravity is None or effects.floor is None or effects.floor.period == math.inf:
+    if effects.floor is None or effects.floor.period == math.inf:
         return 1.0 / math.sqrt(loss)
     layers = experiment.particles / math.prod(side for side in experiment.lengths[:-1] if side)
     speed = effects.floor.amplitude / effects.floor.period
     # 0.9 = 4 sqrt(2)/(2 pi) a of disks; spheres collide four times as often at the same n and T
     temperature = 0.9 * speed**2 / (4.0 ** (dimension - 2) * layers * loss)
-    weight = layers * VOLUME[dimension] * effects.gravity.acceleration
+    weight = -layers * VOLUME[dimension] * effects.gravity.along[dimension - 1]
     is_dense = weight >= 2.0 * MAX_BED_PACKING * temperature
     phi = MAX_BED_PACKING if is_dense else 0.5 * weight / temperature  # averaged over the particles
     return float(collision_frequency(temperature, phi, dimension))
@@ -375,8 +376,7 @@ def kernels(experiments: Iterable[Experiment], r: float) -> dict[Any, tuple[Scen
     scenes: dict[Any, tuple[Scene, Experiment]] = {}
     for experiment in experiments:
         scene = protocols.initial_scene(build(experiment, r, -1.0), experiment)
-        effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
         sources = [text] if (text := sources_of(scene.effects)) else []
-        key = (effects, tuple(side is None for side in scene.box), *sources)
+        key = (kernel_types(scene.effects), tuple(side is None for side in scene.box), *sources)
         scenes.setdefault(key, (scene, experiment))
     return scenes

@@ -143,6 +143,9 @@ def check_experiment(experiment: Experiment) -> None:
     if drives and not PROTOCOLS[kind].DRIVEN:
         legal = f"be steady or stages where there is a drive: {', '.join(drives)}"
         raise InputError("schedule.kind", kind, legal)
+    if effects.gravity is not None and not PROTOCOLS[kind].DRIVEN:
+        legal = "be steady or stages where there is gravity, as a cooling gas is rescaled"
+        raise InputError("schedule.kind", kind, legal)
     if kind == "steady" and not drives:
         raise InputError(
             "schedule.kind", kind, "be cooling or stages where no effect drives the gas"

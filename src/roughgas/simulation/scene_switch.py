@@ -19,6 +19,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, NOW, STARTED
 from roughgas.scene import Scene, shear_rate, walls_drive_flow
 from roughgas.scene.initial import GRAZE, random_spins
+from roughgas.simulation.energy_balance import potential_energy
 from roughgas.simulation.free_flight import (
     end_flights,
     in_starting_order,
@@ -130,7 +131,11 @@ def _end_all_flights(state, scene, time):
     for hook in hooks.active(scene.effects, "transfer"):
         mass = np.ones(1) if state.bodies is None else state.bodies.mass
         squares = (velocity**2 - state.trajectory[:, dimension:-1] ** 2).sum(axis=1)
-        state.ledger[0, hook.account, 0] += 0.5 * np.sum(mass * squares)
+        gained = 0.5 * np.sum(mass * squares)
+        if scene.effects.gravity is not None:
+            height_changes = position - state.trajectory[:, :dimension]
+            gained += potential_energy(scene.effects.gravity, mass, height_changes)
+        state.ledger[0, hook.account, 0] += gained
     state.trajectory[:, :dimension] = position
     state.trajectory[:, dimension:-1] = velocity
     state.trajectory[:, -1] = state.clock[NOW]

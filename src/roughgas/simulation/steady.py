@@ -14,6 +14,7 @@ import numpy as np
 from roughgas.base import InputError, NamedValues
 from roughgas.base.fields import described
 from roughgas.effects import inertia
+from roughgas.effects.gravity import BodyForce
 from roughgas.effects.species import packing
 from roughgas.scene import Scene, assumes_flow, theory_mixture, walls_of
 from roughgas.simulation.energies import (
@@ -115,6 +116,7 @@ def check(scene: Scene, experiment: Experiment[SteadySettings]) -> None:
     With a target error the samples must also show enough phases of the drive.
     """
     _check_momentum(scene, experiment)
+    _check_body_force(scene)
     schedule = experiment.schedule
     measure, every = schedule.measure, schedule.sample_every
     period = schedule.period or every
@@ -147,16 +149,31 @@ def _check_momentum(scene, experiment):
     bath = effects.langevin
     if bath is None or not bath.noise or drag > 0.0:
         return
-    walls = walls_of(effects).values()
-    walled_axes = {wall.axis for wall in walls}
-    walls_grip = any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
-    if len(walled_axes) < len(scene.box) and not walls_grip:
+    walled_axes = {wall.axis for wall in walls_of(effects).values()}
+    if len(walled_axes) < len(scene.box) and not _walls_grip(effects):
         power = experiment.effects["langevin"].power
         legal = (
             "be 0 without a drag in a steady state: noise on single particles heats the centre of "
             "mass of a periodic box for ever (the thermostat conserves momentum)"
         )
         raise InputError("effects.langevin.power", power, legal)
+
+
+def _check_body_force(scene):
+    """Raise InputError for gravity along a periodic axis if nothing damps the momentum along it."""
+    effects, (drag, _) = scene.effects, drag_rates(scene)
+    if isinstance(effects.gravity, BodyForce) and not drag > 0.0 and not _walls_grip(effects):
+        legal = (
+            "have no component along a periodic axis in a steady state without rough or thermal "
+            "walls, or a drag: the gas falls ever faster"
+        )
+        raise InputError("effects.gravity.direction", effects.gravity.direction, legal)
+
+
+def _walls_grip(effects):
+    """Return whether walls or the floor change the velocity along themselves."""
+    walls = walls_of(effects).values()
+    return any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
 
 
 def drive_periods(scene: Scene) -> dict[str, float]:

@@ -65,6 +65,7 @@ from roughgas.theory.rate_equations import (
     collision_rates,
     collisions_to_relax,
     decay_rate,
+    delta_temperatures,
     drive_changes,
     driven_temperatures,
     haff_temperature,

@@ -21,7 +21,8 @@ translational, 1 rotational driving (R. Cafiero, S. Luding & H. J. Herrmann, Eur
 854, 2002), and None no drive: free cooling. A. Megias & A. Santos, Front. Phys. 10, 971671 (2022)
 have disks that are driven with any share.
 
-A Langevin bath has drag and noise, on velocities and on spins (`bath_temperatures`).
+A Langevin bath has drag and noise, on velocities and on spins (`bath_temperatures`). In the Delta
+model contacts of pairs gain a normal speed (`delta_temperatures`).
 
 The equations are linear in (T_tr, T_rot) when time is counted in collisions per particle, n, so
 their solution is exact: the deviation from the stationary ratio fades as exp(-Gamma n), Gamma the
@@ -475,3 +476,26 @@ def bath_temperatures(
     heated = (heating > 0) | (spin_heating > 0)
     T_tr, T_rot = state(low)
     return np.where(heated, T_tr, 0.0)[()], np.where(heated, T_rot, 0.0)[()]
+
+
+def delta_temperatures(r, beta, speed, dimension=2, inertia=None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the stationary T_tr and T_rot of a gas driven by the Delta model, in m a^2/T^2.
+
+    A pair that approaches at the normal speed g parts at r g + 2 Delta, with Delta = `speed` (a/T).
+    Averages over contacts of a Maxwellian gas are <g> = (pi T_tr/m)^(1/2) and <g^2> = 4 T_tr/m, so
+    that with y = Delta (m/T_tr)^(1/2) the energy of translation is constant where
+
+        1 - r^2 + (D-1) q (1-beta^2)/(1-beta+2q) = sqrt(pi) r y + y^2,
+
+    at any density: the left-hand side is the loss of a gas whose rotation is stationary (Lun's
+    formula, since the drive adds translational energy only). For smooth particles: R. Brito,
+    D. Risso & R. Soto, Phys. Rev. E 87, 022209 (2013). Infinite where contacts lose no energy.
+    """
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    tangential = (dimension - 1) * quotient(q * (1 + beta) * (1 - beta), 1 - beta + 2 * q)
+    loss = (1 - r) * (1 + r) + tangential
+    reflected = np.sqrt(np.pi) * r
+    root = np.sqrt(reflected**2 + 4 * loss)
+    T_tr = (check("speed Delta", speed) * quotient(reflected + root, 2 * loss)) ** 2
+    T_tr, theta = np.broadcast_arrays(T_tr, stationary_theta(r, beta, dimension, q, spin_share=0))
+    return T_tr[()], np.multiply(T_tr, theta, out=np.zeros(T_tr.shape), where=theta > 0)[()]

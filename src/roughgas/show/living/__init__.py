@@ -71,6 +71,8 @@ def scene_of(name: str, experiment: WrittenExperiment) -> NamedValues:
             f"effects of {name}", effect, f"be among {', '.join(sorted(SIMULATED_EFFECTS))}"
         )
     is_unsupported = floor and (floor.get("wave", WAVE) != WAVE or "particles" in floor.values())
+    if "direction" in effects.get("gravity", {}):
+        raise InputError(f"gravity of {name}", effects["gravity"], "be without a direction")
     if is_unsupported or (floor and {"half_stroke", "phase"} & floor.keys()):
         legal = "be a sawtooth of an amplitude, no phase, and a material of its own"
         raise InputError(f"floor of {name}", floor, legal)
