@@ -150,7 +150,7 @@ def scene_of(experiment, r, beta):
         mu=effects.get("friction", {}).get("mu"),
         thermostat=thermostat
         and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
-        bath=bath and bath | {"noise": noisy},
+        bath=bath and bath | {"noise": noisy, "spin_velocities": spin_velocities(experiment)},
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
@@ -169,6 +169,12 @@ def scene_of(experiment, r, beta):
         threshold=threshold and (threshold["speed"], threshold["restitution"]),
     )
     return build(experiment, r, beta), world
+
+
+def spin_velocities(experiment):
+    """Angular velocity times a of the bath's medium, of each species, or of the only one."""
+    common = experiment["effects"]["langevin"].get("spin_velocity", 0.0)
+    return [kind.get("spin_velocity", common) for kind in experiment.get("species", [{}])]
 
 
 def begin(experiment, r, beta, seed=0):

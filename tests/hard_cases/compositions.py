@@ -46,7 +46,8 @@ PARAMETERS = {
         "interval": st.floats(0.02, 5.0),
         "drag": st.floats(0.01, 1.0),
         "temperature": st.just(1.0),
-        "spin_drag": st.sampled_from([0.0, 0.5]),
+        "spin_drag": st.just(0.5),
+        "spin_velocity": st.floats(-5.0, 5.0),
     },
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
     "viscoelastic": {"speed": st.floats(0.1, 10.0)},
@@ -84,7 +85,7 @@ EXCLUDES += [*(("shear", name) for name in OPPOSITE[1])]
 # images slide past by thousands, and a scene may take minutes
 ENDLESS = {"gravity", "shear"}
 # values of these parameters without spin
-WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0, "spin_drag": 0.0}
+WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0, "spin_drag": 0.0, "spin_velocity": 0.0}
 
 
 def is_legal(effects, dimension):

@@ -43,6 +43,12 @@ PISTONS = {
 }
 SPIN_DRAG = {"interval": 5.0, "drag": 0.0, "temperature": 0.0, "spin_drag": 0.2}
 DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
+SPINNERS = {"interval": 2.0, "drag": 0.01, "spin_drag": 0.1, "spin_velocity": 3.0}
+AGITATED = SPINNERS | {"temperature": 1.0, "spin_temperature": 0.5, "spin_axis": "x"}
+COUNTER_ROTATING = [
+    kind | {"spin_velocity": velocity}
+    for kind, velocity in zip(THREE_SPECIES[:2], (-2.0, 5.0), strict=True)
+] + THREE_SPECIES[2:]
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
 }
@@ -151,6 +157,16 @@ CASES = {  # experiment, r, beta, seed
     ),
     "species, bath": (of_species("bath", 12, [16, 16]), 0.9, 0.2, 17),
     "drag": (closed({"spin": {"inertia": 0.5}, "langevin": DRAG}, [14, 16]), 1.0, 0.9, 1),
+    "spinners": (closed({"spin": {"inertia": 0.5}, "langevin": SPINNERS}, [14, 16]), 0.98, 0.2, 1),
+    "spheres that spin about x": (
+        closed({"spin": {"inertia": 0.4}, "langevin": AGITATED}, [8, 7, 9]),
+        *(0.98, 0.2, 1),
+    ),
+    "species, spinners": (
+        closed({"spin": {"inertia": 0.5}, "langevin": SPINNERS}, [16, 16])
+        | {"species": COUNTER_ROTATING, "species_pairs": PAIRS},
+        *(0.98, 0.2, 2),
+    ),
     "species": (of_species("gas", 8, [14, 14]), 0.98, 0.2, 1),
     "species, smallest box": (of_species("gas", 3, [6.02, 9.0]), 0.99, 0.5, 2),
     "species, smooth": (of_species("smooth", 8, [14, 14], SMOOTH_SPECIES, []), 0.98, -1.0, 5),
@@ -191,6 +207,7 @@ RARE |= {"viscoelastic gas", "slow viscoelastic gas"}
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
 RARE |= {"species, shaken walls", "species, spheres", "species, bath", "species, kicks", "drag"}
+RARE |= {"spinners", "spheres that spin about x", "species, spinners"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),

@@ -15,23 +15,27 @@ h: it is T/(m gamma) times (gamma h/2) coth(gamma h/2).
 Noise without drag has a `power` in place of a temperature, as in the thermostat (drives.py), but
 acts on single particles, so that momentum is not conserved. Drag without noise drives nothing: such
 a gas cools.
+
+Spinners. Where the medium rotates, drag leads spins to its angular velocity Omega: a step is
+w -> Omega + (w - Omega) e^(-gamma h) plus noise. The medium of each species may rotate differently.
 """
 
 import math
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 from msgspec.structs import asdict
 
 from roughgas.base import InputError
-from roughgas.base.fields import Settings, number
+from roughgas.base.fields import Settings, described, number
 from roughgas.compiling.jit import jit
 from roughgas.effects.drives import first_kick_times
-from roughgas.effects.settings import TEMPERATURE_RANGE, register
-from roughgas.kernel.mathematics import add_scaled, gaussian_vector, scale
+from roughgas.effects.settings import SPIN_VELOCITY_RANGE, TEMPERATURE_RANGE, register
+from roughgas.kernel.mathematics import add_scaled, along_axis, gaussian_vector, scale, subtract
 from roughgas.kernel.particles import (
     change_spin_and_book,
     enter_box,
     mass_of,
+    radius_of,
     set_path_and_book,
     spin_mass_of,
     spin_of,
@@ -67,6 +71,28 @@ class LangevinSettings(Settings, frozen=True, kw_only=True):
     spin_power: Annotated[
         float, number("[0, 1e+12]", "Energy per time that noise puts into a particle's rotation.")
     ] = 0.0
+    spin_velocity: (
+        Annotated[
+            float,
+            number(
+                SPIN_VELOCITY_RANGE,
+                "Angular velocity of the medium times a, to which drag leads spins, in a/T; 0 if "
+                "not given.",
+            ),
+        ]
+        | None
+    ) = None
+    spin_axis: Annotated[
+        Literal["x", "y", "z"],
+        described("Axis about which the medium rotates; in the plane z, normal to it."),
+    ] = "z"
+
+
+class Rotation(NamedTuple):
+    """Rotation of a bath's medium about an axis."""
+
+    spin_velocity: tuple[float, ...]  # (species,) angular velocity times a, in a/T
+    axis: int  # component of spins that is about this axis
 
 
 class Drag(NamedTuple):
@@ -77,6 +103,11 @@ class Drag(NamedTuple):
     spin_factor: float  # the same of the spin
     noise: Any = None  # variance of the momentum over the mass, per component and step; None: 0
     spin_noise: Any = None  # the same of the spin
+    rotation: Any = None  # Rotation of the medium; None: spins decay to 0
+
+
+class RotatingMedium(Drag):
+    """A bath without noise whose medium rotates, and supplies energy to spins."""
 
 
 class Langevin(NamedTuple):
@@ -87,10 +118,11 @@ class Langevin(NamedTuple):
     spin_factor: float
     noise: float
     spin_noise: float
+    rotation: Any = None
 
     @classmethod
     def from_settings(cls, settings, context):
-        """Return the effect, or Drag without noise, from LangevinSettings and a SceneContext.
+        """Return the effect from LangevinSettings and a SceneContext; without noise a Drag.
 
         Raises InputError for settings that contradict each other or the scene.
         """
@@ -104,11 +136,14 @@ class Langevin(NamedTuple):
             values = asdict(settings).items()
             key, value = next(pair for pair in values if pair[0].startswith("spin_") and pair[1])
             raise InputError(f"effects.langevin.{key}", value, "be 0 where nothing spins")
+        rotation = _rotation(settings, context)
         if noise == spin_noise == 0.0:
             if velocity_factor == spin_factor == 1.0:
                 raise InputError("effects.langevin", asdict(settings), "have a drag or a power")
-            return Drag(interval, velocity_factor, spin_factor)
-        return cls(interval, velocity_factor, spin_factor, noise, spin_noise)
+            is_driven = rotation is not None and any(rotation.spin_velocity)
+            kind = RotatingMedium if is_driven else Drag
+            return kind(interval, velocity_factor, spin_factor, rotation=rotation)
+        return cls(interval, velocity_factor, spin_factor, noise, spin_noise, rotation)
 
 
 def _step_factors(settings, prefix, components):
@@ -134,6 +169,31 @@ def _step_factors(settings, prefix, components):
         duration = removed_share / (2.0 * drag) if drag else settings.interval
         variance = 2.0 * power / components * duration
     return math.exp(-exponent / 2.0), variance
+
+
+def _rotation(settings, context):
+    """Return the Rotation of the medium; None where no spin velocity is given.
+
+    Species without one have the bath's. Raises InputError for a spin velocity without drag on
+    spins, and for another axis than z in the plane.
+    """
+    common, of_species = settings.spin_velocity, context.spin_velocity_of_species
+    keys = "effects.langevin", *(f"species[{k}]" for k in range(len(of_species)))
+    for key, velocity in zip(keys, (common, *of_species), strict=True):
+        if velocity and not settings.spin_drag:
+            raise InputError(
+                f"{key}.spin_velocity", velocity, "be 0 without effects.langevin.spin_drag"
+            )
+    axis, is_plane = settings.spin_axis, len(context.box) == 2
+    if is_plane and axis != "z":
+        raise InputError("effects.langevin.spin_axis", axis, "be z in two dimensions")
+    velocities = [common if velocity is None else velocity for velocity in of_species or (None,)]
+    if not settings.spin_drag or velocities == [None] * len(velocities):
+        return None
+    return Rotation(
+        tuple(float(velocity or 0.0) for velocity in velocities),
+        0 if is_plane else "xyz".index(axis),
+    )
 
 
 @jit
@@ -171,13 +231,27 @@ def _step_spin(bath, account, state, scene, i):
     """Let particle i's spin take a step of its Ornstein-Uhlenbeck process; enter the energy."""
     spin = scene.effects.spin
     before = spin_of(state.spin, scene.box, i)
-    spin_change = scale(before, bath.spin_factor - 1.0)
+    excess = before
+    if bath.rotation is not None:
+        excess = subtract(before, _spin_of_medium(bath.rotation, state.bodies, before, i))
+    spin_change = scale(excess, bath.spin_factor - 1.0)
     if bath.spin_noise is not None:
         size = math.sqrt(bath.spin_noise / spin_mass_of(state.bodies, spin, i))
         spin_change = add_scaled(spin_change, gaussian_vector(state.random, before, size), 1.0)
     change_spin_and_book(state, scene, i, before, spin_change, state.ledger[0, account])
 
 
+@jit
+def _spin_of_medium(rotation, bodies, like, i):
+    """Return the spin of particle i if it rotates with the medium, a vector like `like`, in a/T.
+
+    `bodies` is State.bodies. The surface velocity of a larger particle is larger.
+    """
+    species = 0 if bodies is None else bodies.species[i]
+    return along_axis(like, rotation.axis, rotation.spin_velocity[species] * radius_of(bodies, i))
+
+
 STEPS = {"particle_times": first_kick_times, "predict": predict_step, "resolve": resolve_step}
 register(Drag, **STEPS)
+register(RotatingMedium, drives=True, **STEPS)
 register(Langevin, LangevinSettings, random=True, drives=True, **STEPS)

@@ -8,7 +8,7 @@ from roughgas.base import InputError, NamedValues
 from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, shear_rate
+from roughgas.scene import Scene, rotation_of_medium, shear_rate
 from roughgas.scene.initial import check as check_scene
 from roughgas.simulation import cooling, stages, steady
 from roughgas.simulation.energies import Columns
@@ -103,6 +103,7 @@ def observed_system(scene: Scene, experiment: Experiment) -> "System":
         cooling=not PROTOCOLS[schedule.kind].DRIVEN,
         species=() if mixture is None else tuple(map(_species_group, mixture.kinds)),
         period=getattr(schedule, "period", None),
+        rotates=rotation_of_medium(effects) is not None,
     )
 
 
