@@ -41,7 +41,7 @@ def measured(experiment, r, beta, seed=1):
 @pytest.mark.slow  # compiles two kernels
 @pytest.mark.parametrize("box", [(1000, 1000), (1000, 1000, 1000)])
 def test_a_spin_decays_to_the_medium_exponentially(box):
-    """Of two particles that never meet, about y in space: to rounding; the energy balance closes."""
+    """To rounding, of two particles that never meet; the energy balance closes."""
     interval, steps, axis = 0.5, 7, {} if len(box) == 2 else {"spin_axis": "y"}
     bath = {"interval": interval, "spin_drag": 0.3, "spin_velocity": 2.0} | axis
     scene, state = begin(gas(2, box, bath), 0.9, 0.2, 4)

@@ -297,7 +297,7 @@ def test_a_dataset_has_the_observables_of_each_species():
 
 
 def test_spins_are_relative_to_the_mean_of_each_species_where_a_medium_rotates():
-    """The mean is of angular velocities, weighted with the moments of inertia; others keep spins."""
+    """The mean is of angular velocities, weighted with the moments of inertia."""
     groups = SpeciesGroup(10, 1.0), SpeciesGroup(20, 2.0)
     species_of = np.repeat([0, 1], [10, 20])
     system = system_of((20, 20), species=groups, rotates=True)
