@@ -65,7 +65,7 @@ class Kicks:
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def apply(self, i, v, w):
+    def apply(self, i, x, v, w):
         """Kick particle i and a random partner, in the arrays of velocities and of spins."""
         candidates = [k for k in self.order if k != i]
         j = candidates[math.floor(self.random.uniform() * len(candidates))]
@@ -101,10 +101,13 @@ class Bath:
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def apply(self, i, v, w):
-        """Apply a step to particle i, in the arrays of velocities and of spins."""
+    def apply(self, i, x, v, w):
+        """Apply a step to particle i at x[i] in the box, in the arrays of velocities and spins."""
         m = self.bodies.mass[i]
-        self._step(v[i], np.zeros(self.dimension), range(self.dimension), m, "")
+        flow = np.zeros(self.dimension)
+        if self.bath["shear"]:
+            flow[0] = self.bath["shear"] * (x[i, 1] / self.bath["height"] - 0.5)
+        self._step(v[i], flow, range(self.dimension), m, "")
         if self.rotates:
             target = np.zeros(3)
             target["xyz".index(self.bath.get("spin_axis", "z"))] = (

@@ -150,7 +150,7 @@ def scene_of(experiment, r, beta):
         mu=effects.get("friction", {}).get("mu"),
         thermostat=thermostat
         and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
-        bath=bath and bath | {"noise": noisy, "spin_velocities": spin_velocities(experiment)},
+        bath=bath and bath | {"noise": noisy} | medium(experiment),
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
@@ -171,10 +171,14 @@ def scene_of(experiment, r, beta):
     return build(experiment, r, beta), world
 
 
-def spin_velocities(experiment):
-    """Angular velocity times a of the bath's medium, of each species, or of the only one."""
-    common = experiment["effects"]["langevin"].get("spin_velocity", 0.0)
-    return [kind.get("spin_velocity", common) for kind in experiment.get("species", [{}])]
+def medium(experiment):
+    """Motion of a bath's medium: how fast its top moves over its bottom, its height, its spins."""
+    effects, height = experiment["effects"], experiment["box"][1]
+    speed = effects.get("shear", {}).get("velocity", 0.0)
+    vorticity = -speed / height / 2.0 if speed else 0.0
+    common = effects["langevin"].get("spin_velocity", vorticity)
+    spins = [kind.get("spin_velocity", common) for kind in experiment.get("species", [{}])]
+    return {"shear": speed, "height": height, "spin_velocities": spins}
 
 
 def begin(experiment, r, beta, seed=0):

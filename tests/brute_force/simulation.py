@@ -234,7 +234,7 @@ class BruteForce(Contacts):
         """Carry out an event."""
         world = self.world
         if kind == "kick":
-            self.kicks.apply(i, self.v, self.w)
+            self.kicks.apply(i, self.x, self.v, self.w)
         elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":

@@ -114,8 +114,10 @@ def errors_of(name: str, origin: str, variable: Variable) -> dict[str, Variable]
         "ci95": f"half width of the 95 % interval of {name}, by Student's t",
     }
     error = error_of(name, origin, variable)
+    units = {"dof": "1", "ci95": error.units}
     return {f"{name}_stderr": error} | {
-        f"{name}_{end}": error._replace(long_name=text) for end, text in texts.items()
+        f"{name}_{end}": error._replace(long_name=text, units=units[end])
+        for end, text in texts.items()
     }
 
 
@@ -267,7 +269,7 @@ POINT = {
     "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, FLOWING),
     **_with_errors(
         "mean_spin",
-        "a times the mean angular velocity about the axis of the medium",
+        "mean angular velocity times a, about the axis of the medium",
         SPINNERS,
         SPEED,
     ),

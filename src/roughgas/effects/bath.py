@@ -18,6 +18,13 @@ a gas cools.
 
 Spinners. Where the medium rotates, drag leads spins to its angular velocity Omega: a step is
 w -> Omega + (w - Omega) e^(-gamma h) plus noise. The medium of each species may rotate differently.
+
+Under shear the medium flows with the rate G of the images, v_x = G (y - L/2), and drag acts on the
+velocity relative to it where the particle is; the image of a particle in the box has the flow of
+its own height. A medium that flows rotates with -G/2. Flight between steps shears the relative
+velocity c exactly, dc_x/dt = -G c_y, so that steps and flights have a stationary state in closed
+form without contacts (theory.pressure_in_sheared_bath): its stress differs from the limit of small
+h by a share (gamma h)^2/3.
 """
 
 import math
@@ -76,8 +83,8 @@ class LangevinSettings(Settings, frozen=True, kw_only=True):
             float,
             number(
                 SPIN_VELOCITY_RANGE,
-                "Angular velocity of the medium times a, to which drag leads spins, in a/T; 0 if "
-                "not given.",
+                "Angular velocity of the medium times a, to which drag leads spins, in a/T; if not "
+                "given, 0, or under shear minus half of the shear rate.",
             ),
         ]
         | None
@@ -104,6 +111,7 @@ class Drag(NamedTuple):
     noise: Any = None  # variance of the momentum over the mass, per component and step; None: 0
     spin_noise: Any = None  # the same of the spin
     rotation: Any = None  # Rotation of the medium; None: spins decay to 0
+    shear_rate: Any = None  # of the medium, in 1/T; None: velocities decay to 0
 
 
 class RotatingMedium(Drag):
@@ -119,6 +127,7 @@ class Langevin(NamedTuple):
     noise: float
     spin_noise: float
     rotation: Any = None
+    shear_rate: Any = None
 
     @classmethod
     def from_settings(cls, settings, context):
@@ -126,9 +135,6 @@ class Langevin(NamedTuple):
 
         Raises InputError for settings that contradict each other or the scene.
         """
-        if "shear" in context.effects:
-            legal = "be without shear: its drag is that of a medium at rest"
-            raise InputError("effects.langevin", "there", legal)
         dimension, interval = len(context.box), settings.interval
         velocity_factor, noise = _step_factors(settings, "", dimension)
         spin_factor, spin_noise = _step_factors(settings, "spin_", 2 * dimension - 3)
@@ -136,14 +142,15 @@ class Langevin(NamedTuple):
             values = asdict(settings).items()
             key, value = next(pair for pair in values if pair[0].startswith("spin_") and pair[1])
             raise InputError(f"effects.langevin.{key}", value, "be 0 where nothing spins")
-        rotation = _rotation(settings, context)
+        shear_rate = _shear_rate(context)
+        medium = _rotation(settings, context, shear_rate), shear_rate if settings.drag else None
         if noise == spin_noise == 0.0:
             if velocity_factor == spin_factor == 1.0:
                 raise InputError("effects.langevin", asdict(settings), "have a drag or a power")
-            is_driven = rotation is not None and any(rotation.spin_velocity)
+            is_driven = medium[0] is not None and any(medium[0].spin_velocity)
             kind = RotatingMedium if is_driven else Drag
-            return kind(interval, velocity_factor, spin_factor, rotation=rotation)
-        return cls(interval, velocity_factor, spin_factor, noise, spin_noise, rotation)
+            return kind(interval, velocity_factor, spin_factor, None, None, *medium)
+        return cls(interval, velocity_factor, spin_factor, noise, spin_noise, *medium)
 
 
 def _step_factors(settings, prefix, components):
@@ -171,11 +178,18 @@ def _step_factors(settings, prefix, components):
     return math.exp(-exponent / 2.0), variance
 
 
-def _rotation(settings, context):
-    """Return the Rotation of the medium; None where no spin velocity is given.
+def _shear_rate(context):
+    """Return the shear rate of the scene that has this SceneContext, in 1/T; None without shear."""
+    shear = context.effects.get("shear")
+    return None if shear is None else shear.velocity / context.box[1]
 
-    Species without one have the bath's. Raises InputError for a spin velocity without drag on
-    spins, and for another axis than z in the plane.
+
+def _rotation(settings, context, shear_rate):
+    """Return the Rotation of the medium; None where it has no spin velocity.
+
+    Species without one have the bath's, which under shear is by default the vorticity's, minus half
+    of the `shear_rate`. Raises InputError for a spin velocity without drag on spins, and for
+    another axis than z in the plane and under shear.
     """
     common, of_species = settings.spin_velocity, context.spin_velocity_of_species
     keys = "effects.langevin", *(f"species[{k}]" for k in range(len(of_species)))
@@ -185,8 +199,11 @@ def _rotation(settings, context):
                 f"{key}.spin_velocity", velocity, "be 0 without effects.langevin.spin_drag"
             )
     axis, is_plane = settings.spin_axis, len(context.box) == 2
-    if is_plane and axis != "z":
-        raise InputError("effects.langevin.spin_axis", axis, "be z in two dimensions")
+    if axis != "z" and (is_plane or shear_rate is not None):
+        legal = f"be z {'in two dimensions' if is_plane else 'under shear, as its vorticity'}"
+        raise InputError("effects.langevin.spin_axis", axis, legal)
+    if common is None and shear_rate is not None:
+        common = -0.5 * shear_rate
     velocities = [common if velocity is None else velocity for velocity in of_species or (None,)]
     if not settings.spin_drag or velocities == [None] * len(velocities):
         return None
@@ -213,7 +230,11 @@ def resolve_step(bath, account, code, state, scene, i, time):
     is `account`; the code is always 0.
     """
     position, before = enter_box(state, scene, i, time)
-    after = scale(before, bath.velocity_factor)
+    if bath.shear_rate is None:
+        after = scale(before, bath.velocity_factor)
+    else:
+        flow = along_axis(before, 0, bath.shear_rate * (position[1] - scene.middle))
+        after = add_scaled(flow, subtract(before, flow), bath.velocity_factor)
     if bath.noise is not None:
         size = math.sqrt(bath.noise / mass_of(state.bodies, i))
         noise = gaussian_vector(state.random, before, size)

@@ -130,14 +130,14 @@ def ratio_in_bath(attributes: Attributes, r: Any, beta: Any) -> np.ndarray:
     It has the broadcast shape of `r` and `beta`. `attributes` are the attributes of the dataset;
     its settings of the bath are in `langevin_json`. NaN where the packing is unknown, nothing
     spins, or the bath supplies no energy, and for gases outside of these rate equations: with
-    several species, friction, a thermostat, or a medium that rotates. A swept parameter of the bath
-    is among the attributes, as is the inertia.
+    several species, friction, a thermostat, or a medium that rotates or flows (`shear_rate`). A
+    swept parameter of the bath is among the attributes, as is the inertia.
     """
     r, beta = np.broadcast_arrays(r, beta)
     settings = json.loads(attributes[LANGEVIN_ATTRIBUTE])
     section, _, swept = attributes.get("swept", "").rpartition(".")
-    outside = settings.get("spin_velocity") or swept == "spin_velocity"
-    if outside or any(name in attributes for name in OUTSIDE_BATH_THEORY):
+    moves = settings.get("spin_velocity") or settings.get("shear_rate") or swept == "spin_velocity"
+    if moves or any(name in attributes for name in OUTSIDE_BATH_THEORY):
         return np.full(r.shape, np.nan)
     names = {"inertia", "packing", *(settings.keys() - NOT_IN_BATH_THEORY)}
     parameters = {name: settings.get(name, attributes.get(name, np.nan)) for name in names}
