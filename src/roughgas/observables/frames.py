@@ -271,20 +271,20 @@ def _thermal_spin(frames: Frame | FrameSeries) -> np.ndarray:
         thermal = np.empty_like(frames.spin)
         for index in np.unique(frames.species_of):
             members = frames.species_of == index
-            thermal[..., members, :] = _without_mean_spin(frames, members)
+            thermal[..., members, :] = _without_mean_spin(frames, frames.spin, members)
         return thermal
     if frames.system.shear_rate or frames.system.rotates:
-        return _without_mean_spin(frames, slice(None))
+        return _without_mean_spin(frames, frames.spin, slice(None))
     return frames.spin
 
 
-def _without_mean_spin(frames: Frame | FrameSeries, members: Any) -> np.ndarray:
+def _without_mean_spin(frames: Frame | FrameSeries, spin: np.ndarray, members: Any) -> np.ndarray:
     """Return the spins of some particles without their mean, (..., particles, 2 D - 3).
 
-    The mean is the surface velocity of a particle with the mean angular velocity. `members` is an
-    index of particles: a mask (N,) or a slice.
+    The mean is the surface velocity of a particle with the mean angular velocity. `spin` are the
+    spins of `frames`; `members` is an index of particles: a mask (N,) or a slice.
     """
-    spin, radius = frames.spin[..., members, :], frames.radius[members]
+    spin, radius = spin[..., members, :], frames.radius[members]
     turning = (frames.mass[members] * frames.inertia[members] * radius)[:, None]
     momenta = (turning * spin).sum(axis=-2, keepdims=True)
     return spin - radius[:, None] * (momenta / (turning[:, 0] @ radius))

@@ -177,7 +177,8 @@ def energies_of(
     )
     if species is not None or not rotates:
         return total
-    rotational = [energy.rotational for energy in species_energies(columns, scene, state)]
+    by_species = species_energies(columns, scene, state)
+    rotational = [np.asarray(species_energy.rotational) for species_energy in by_species]
     weights = np.bincount(bodies.species)
     return total._replace(rotational=np.average(rotational, axis=0, weights=weights))
 
