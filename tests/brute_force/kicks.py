@@ -4,6 +4,8 @@ and lists."""
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 WORD = 2**64
 
 
@@ -63,7 +65,7 @@ class Kicks:
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def apply(self, i, v, w):
+    def apply(self, i, x, v, w):
         """Kick particle i and a random partner, in the arrays of velocities and of spins."""
         candidates = [k for k in self.order if k != i]
         j = candidates[math.floor(self.random.uniform() * len(candidates))]
@@ -99,24 +101,32 @@ class Bath:
         due = min(self.due)
         return max(0.0, due - time), "kick", self.due.index(due), -1
 
-    def apply(self, i, v, w):
-        """Apply a step to particle i, in the arrays of velocities and of spins."""
+    def apply(self, i, x, v, w):
+        """Apply a step to particle i at x[i] in the box, in the arrays of velocities and spins."""
         m = self.bodies.mass[i]
-        self._step(v[i], range(self.dimension), m, "")
+        flow = np.zeros(self.dimension)
+        if self.bath["shear"]:
+            flow[0] = self.bath["shear"] * (x[i, 1] / self.bath["height"] - 0.5)
+        self._step(v[i], flow, range(self.dimension), m, "")
         if self.rotates:
-            self._step(w[i], range(3 - self.spins, 3), m * self.bodies.q[i], "spin_")
+            target = np.zeros(3)
+            target["xyz".index(self.bath.get("spin_axis", "z"))] = (
+                self.bath["spin_velocities"][self.bodies.species[i]] * self.bodies.radius[i]
+            )
+            self._step(w[i], target, range(3 - self.spins, 3), m * self.bodies.q[i], "spin_")
         self.due[i] += self.bath["interval"]
 
-    def _step(self, velocity, axes, mass, prefix):
-        """Advance a velocity u by a step h of du = -g u dt + (2 D)^(1/2) dW.
+    def _step(self, velocity, target, axes, mass, prefix):
+        """Advance a velocity u by a step h of du = -g (u - u_0) dt + (2 D)^(1/2) dW.
 
-        u(h) has the mean u e^(-g h) and the variance D (1 - e^(-2 g h))/g.
+        u(h) - u_0 has the mean (u - u_0) e^(-g h) and the variance D (1 - e^(-2 g h))/g.
         """
         g, h = self.bath.get(f"{prefix}drag", 0.0), self.bath["interval"]
         D = g * self.bath.get(f"{prefix}temperature", 0.0) / mass
         D += self.bath.get(f"{prefix}power", 0.0) / (len(axes) * mass)
         variance = D * (1.0 - math.exp(-2.0 * g * h)) / g if g else 2.0 * D * h
         for axis in axes:
-            velocity[axis] *= math.exp(-g * h)
+            excess = velocity[axis] - target[axis]
+            velocity[axis] = target[axis] + excess * math.exp(-g * h)
             if self.bath["noise"]:
                 velocity[axis] += math.sqrt(variance) * self.random.gaussian()

@@ -162,7 +162,7 @@ def scene_of(experiment, r, beta):
         thermostat=thermostat
         and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
         delta=effects.get("delta", {}).get("speed", 0.0),
-        bath=bath and bath | {"noise": noisy},
+        bath=bath and bath | {"noise": noisy} | medium(experiment),
         acceleration=acceleration_of(effects.get("gravity"), len(periods)),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
@@ -189,6 +189,16 @@ def acceleration_of(gravity, dimension):
         return ()
     direction = np.array(gravity.get("direction", [0.0] * (dimension - 1) + [-1.0]), float)
     return tuple(gravity["acceleration"] * direction / np.sqrt(direction @ direction))
+
+
+def medium(experiment):
+    """Motion of a bath's medium: how fast its top moves over its bottom, its height, its spins."""
+    effects, height = experiment["effects"], experiment["box"][1]
+    speed = effects.get("shear", {}).get("velocity", 0.0)
+    vorticity = -speed / height / 2.0 if speed else 0.0
+    common = effects["langevin"].get("spin_velocity", vorticity)
+    spins = [kind.get("spin_velocity", common) for kind in experiment.get("species", [{}])]
+    return {"shear": speed, "height": height, "spin_velocities": spins}
 
 
 def begin(experiment, r, beta, seed=0):

@@ -239,7 +239,7 @@ class BruteForce(Contacts):
     def _resolve(self, kind, i, j):
         """Carry out an event."""
         if kind == "kick":
-            self.kicks.apply(i, self.v, self.w)
+            self.kicks.apply(i, self.x, self.v, self.w)
         elif kind == "pair":
             self._collide(i, j)
         else:

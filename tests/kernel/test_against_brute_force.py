@@ -45,6 +45,18 @@ SPIN_DRAG = {"interval": 5.0, "drag": 0.0, "temperature": 0.0, "spin_drag": 0.2}
 SLOW = {"speed": 0.2, "restitution": 1.0}
 MONOLAYER = {"delta": {"speed": 0.3}, "threshold": SLOW}
 DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
+SPINNERS = {"interval": 2.0, "drag": 0.01, "spin_drag": 0.1, "spin_velocity": 3.0}
+AGITATED = SPINNERS | {"temperature": 1.0, "spin_temperature": 0.5, "spin_axis": "x"}
+FLOWING = {
+    "spin": {"inertia": 0.5},
+    "shear": {"velocity": 2.0},
+    "langevin": {"interval": 0.5, "drag": 0.2, "temperature": 1.0, "spin_drag": 0.3},
+}
+SWIFT = {"shear": {"velocity": 50.0}, "langevin": {"interval": 0.1, "drag": 0.5, "spin_drag": 0.3}}
+COUNTER_ROTATING = [
+    kind | {"spin_velocity": velocity}
+    for kind, velocity in zip(THREE_SPECIES[:2], (-2.0, 5.0), strict=True)
+] + THREE_SPECIES[2:]
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
 }
@@ -169,6 +181,22 @@ CASES = {  # experiment, r, beta, seed
     "species, monolayer": (of_species("monolayer", 12, [16, 16]), 0.9, 0.2, 17),
     "monolayer of smooth spheres": (closed(MONOLAYER, [8, 7, 9]), 0.8, -1.0, 3),
     "drag": (closed({"spin": {"inertia": 0.5}, "langevin": DRAG}, [14, 16]), 1.0, 0.9, 1),
+    "spinners": (closed({"spin": {"inertia": 0.5}, "langevin": SPINNERS}, [14, 16]), 0.98, 0.2, 1),
+    "spheres that spin about x": (
+        closed({"spin": {"inertia": 0.4}, "langevin": AGITATED}, [8, 7, 9]),
+        *(0.98, 0.2, 1),
+    ),
+    "species, spinners": (
+        closed({"spin": {"inertia": 0.5}, "langevin": SPINNERS}, [16, 16])
+        | {"species": COUNTER_ROTATING, "species_pairs": PAIRS},
+        *(0.98, 0.2, 2),
+    ),
+    "bath that flows": (closed(FLOWING, [12, 12]), 0.9, 0.2, 6),
+    "drag by a fast flow": (closed(FLOWING | SWIFT, [9, 11]), 0.9, 0.2, 7),
+    "species, bath that flows": (
+        closed(FLOWING, [16, 16]) | {"species": COUNTER_ROTATING, "species_pairs": PAIRS},
+        *(0.9, 0.2, 6),
+    ),
     "species": (of_species("gas", 8, [14, 14]), 0.98, 0.2, 1),
     "species, smallest box": (of_species("gas", 3, [6.02, 9.0]), 0.99, 0.5, 2),
     "species, smooth": (of_species("smooth", 8, [14, 14], SMOOTH_SPECIES, []), 0.98, -1.0, 5),
@@ -217,6 +245,8 @@ RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, s
 RARE |= {"species, shaken walls", "species, spheres", "species, bath", "species, kicks", "drag"}
 RARE |= {"species, monolayer", "monolayer of smooth spheres", "species, chute", "tilted bed"}
 RARE |= {"tilted bed between equal walls", "channel", "falling spheres"}
+RARE |= {"spinners", "spheres that spin about x", "species, spinners"}
+RARE |= {"bath that flows", "drag by a fast flow", "species, bath that flows"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),

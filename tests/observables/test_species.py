@@ -17,7 +17,7 @@ from roughgas.base import NeedsError
 from roughgas.cli.show import observed_table
 from roughgas.effects.contacts import HEAT, STRESSES, columns_of_pairs
 from roughgas.observables import OBSERVABLES
-from roughgas.observables.frames import SpeciesGroup
+from roughgas.observables.frames import FrameSeries, SpeciesGroup
 from roughgas.observables.plugin import SUFFIX
 from roughgas.simulation.observable_tracker import ObservableUnpickler
 from roughgas.statistics.estimates import Estimate
@@ -294,3 +294,20 @@ def test_a_dataset_has_the_observables_of_each_species():
     assert weighted.values == pytest.approx(
         point.mean_square_displacement.values, rel=1e-9, nan_ok=True
     )
+
+
+def test_spins_are_relative_to_the_mean_of_each_species_where_a_medium_rotates():
+    """The mean is of angular velocities, weighted with the moments of inertia."""
+    groups = SpeciesGroup(10, 1.0), SpeciesGroup(20, 2.0)
+    species_of = np.repeat([0, 1], [10, 20])
+    system = system_of((20, 20), species=groups, rotates=True)
+    radius = 1.0 + species_of
+    spin = radius[:, None] * np.where(species_of, 3.0, -2.0)[:, None]
+    frame = frame_of(system, spin=spin, radius=radius, mass=radius**2, species_of=species_of)
+    for frames in (frame, FrameSeries.of([frame, frame])):
+        assert frames.thermal_spin == pytest.approx(0.0, abs=1e-14)
+        assert np.array_equal(frames.only(1).thermal_spin, frames.thermal_spin[..., 10:, :])
+    still = frame._replace(system=system._replace(rotates=False))
+    assert np.array_equal(still.thermal_spin, spin)
+    uniform = frame_of(system_of((20, 20), rotates=True))
+    assert uniform.thermal_spin.mean() == pytest.approx(0.0, abs=1e-15)

@@ -36,7 +36,7 @@ FRACTION, NON_NEGATIVE, VERDICT_RANGE = (
 )
 UNCERTAINTIES = {
     f"{name}_{quality}": Interval("[0, inf]")
-    for name in ("R", "R_collisional", "vertical_share", "E_trans", "E_rot")
+    for name in ("R", "R_collisional", "vertical_share", "mean_spin", "E_trans", "E_rot")
     for quality in ("stderr", "dof", "ci95")
 }
 """Legal values of uncertainties, which may also be NaN, unknown."""
@@ -142,12 +142,13 @@ def _over_grid(variable: Variable, **changes: Any) -> Variable:
     return variable._replace(dims=dims, dtype=dtype, flags="")._replace(**changes)
 
 
-POOLED = ("R", "R_collisional", "contact_correlation", "vertical_share")
+POOLED = ("R", "R_collisional", "contact_correlation", "vertical_share", "mean_spin")
 """Means over seeds whose error pools their scatter with the errors within each seed."""
 SCATTERED = (
     *("R_ratio_of_means", "R_corrected", "R_unsubtracted", "R_drift", "E_trans", "E_rot"),
     *("input_spin_share", "decay_exponent", "shear_rate"),
     *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
+    "mean_spin_species",
 )
 """Means over seeds with an error from their scatter."""
 COOLING_SERIES = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")

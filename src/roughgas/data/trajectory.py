@@ -136,7 +136,7 @@ TRAJECTORY = register(
             of_settings=True,
         ),
         "E_rot": Variable(
-            "rotational energy per degree of freedom, of a sheared gas without the mean spin",
+            "rotational energy per degree of freedom, without the mean spin of shear or of a bath",
             ENERGY,
             ("frame",),
             when=(SPIN,),

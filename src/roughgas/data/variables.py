@@ -32,6 +32,7 @@ GRID_PLACEHOLDER = "grid"
 
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with `target_stderr`"
+FLOWING = "sheared gas, or in a bath whose medium rotates"
 CONTACT = "where the contact-time model acts"
 STATE_KEPT = "with `keep_state`"
 OF_SPEED = "whose r depends on the speed"
@@ -40,6 +41,7 @@ AT_CONTACTS = "driven gas with `contact_averages`"
 STAGES = "gas through stages"
 CONTACTS_LOGGED = "with `contact_log`"
 BED = "driven gas under gravity"
+SPINNERS = "driven gas in a bath whose medium rotates"
 
 
 class Variable(NamedTuple):
@@ -112,8 +114,10 @@ def errors_of(name: str, origin: str, variable: Variable) -> dict[str, Variable]
         "ci95": f"half width of the 95 % interval of {name}, by Student's t",
     }
     error = error_of(name, origin, variable)
+    units = {"dof": "1", "ci95": error.units}
     return {f"{name}_stderr": error} | {
-        f"{name}_{end}": error._replace(long_name=text) for end, text in texts.items()
+        f"{name}_{end}": error._replace(long_name=text, units=units[end])
+        for end, text in texts.items()
     }
 
 
@@ -138,12 +142,12 @@ def share_of_trust(name: str) -> str:
     return f"share of seeds whose {error} is large enough; -1 where most have too little to tell"
 
 
-def _with_errors(name: str, long_name: str, when: str) -> dict[str, Variable]:
-    """Return descriptions of a ratio of averages and of its errors, for gases of a condition.
+def _with_errors(name: str, long_name: str, when: str, units: str = "1") -> dict[str, Variable]:
+    """Return descriptions of an average and of its errors, for gases of a condition.
 
     They are by name: <name>, its errors (`errors_of`) and <name>_trusted; `when` is the condition.
     """
-    variable = Variable(long_name, when=(when,))
+    variable = Variable(long_name, units, when=(when,))
     errors = errors_of(name, WITHIN, variable)
     return {name: variable, **errors, f"{name}_trusted": trust_of(name, variable)}
 
@@ -260,9 +264,15 @@ POINT = {
     "contact_time_fraction": Variable(
         "share of contacts changed by the contact-time model", when=(CONTACT,)
     ),
-    "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", SHEARED),
-    "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(SHEARED,)),
-    "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, SHEARED),
+    "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", FLOWING),
+    "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(FLOWING,)),
+    "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, FLOWING),
+    **_with_errors(
+        "mean_spin",
+        "mean angular velocity times a, about the axis of the medium",
+        SPINNERS,
+        SPEED,
+    ),
     "R_flow_shift": _of_spin("R over the local flow, less R over the mean flow", "1", SHEARED),
     "R_flow_sigma": _of_spin("sigmas by which R_flow_shift differs from 0", "1", SHEARED),
     "shear_rate": Variable(
@@ -286,6 +296,7 @@ POINT = {
     **_of_species("E_trans_species", "translational energy per degree of freedom", ENERGY),
     **_of_species("E_rot_species", "rotational energy per degree of freedom", ENERGY, SPIN),
     **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
+    **_of_species("mean_spin_species", "mean spin", SPEED, SPINNERS),
     "time": _series("time since the start", TIME, DRIVEN, STAGES),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
     "decay_exponent": Variable(

@@ -17,6 +17,8 @@ SPEED_RANGE = "[0, 10000]"
 """Legal speeds of a drive, in a/T; initial speeds are about 1, and faster drives take for ever."""
 TEMPERATURE_RANGE = "(0, 1e+08]"
 """Temperatures (m a^2/T^2) that belong to such speeds."""
+SPIN_VELOCITY_RANGE = "[-10000, 10000]"
+"""Spin velocities of a medium, in a/T."""
 LENGTH_RANGE, PERIOD_RANGE = "[0, 1e+06]", "[1e-09, 1e+09]"
 WallRestitution = (
     Annotated[
@@ -48,6 +50,7 @@ class SceneContext(NamedTuple):
     effects: Mapping[str, Any]  # the settings of each active effect, by name
     restitution_of_species: Sequence[float] = ()  # values that species or pairs set themselves
     roughness_of_species: Sequence[float] = ()
+    spin_velocity_of_species: Sequence[float | None] = ()  # of each species, None if not given
     name: str = ""  # of the effect to build
 
 

@@ -22,7 +22,7 @@ from msgspec.structs import asdict
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval, NeedsError, short_repr
 from roughgas.base.fields import NAME, Settings, described, number, numbers, whole
 from roughgas.base.files import MAX_TABLE_BYTES, content_of
-from roughgas.effects.settings import register
+from roughgas.effects.settings import SPIN_VELOCITY_RANGE, register
 from roughgas.theory.closed_forms import packing_fraction
 
 SIZE = Interval("[1e-06, 1e+06]")
@@ -73,6 +73,14 @@ Inertia = Annotated[
         "q = I/(m a^2), of its own mass and radius; that of `spin` if not given.",
     ),
 ]
+SpinVelocity = Annotated[
+    float,
+    number(
+        SPIN_VELOCITY_RANGE,
+        "Angular velocity of its medium times a, to which drag of `langevin` leads its spins, in "
+        "a/T; that of `langevin` if not given.",
+    ),
+]
 
 
 class RadiiSettings(Settings, frozen=True, kw_only=True):
@@ -103,6 +111,7 @@ class SpeciesSettings(MaterialSettings, frozen=True, kw_only=True):
     radius: Radius | Radii | RadiiSettings = 1.0
     mass: Mass | None = None
     inertia: Inertia | None = None
+    spin_velocity: SpinVelocity | None = None
 
 
 class PairSettings(MaterialSettings, frozen=True, kw_only=True):
@@ -332,6 +341,8 @@ def _build_kind(key, index, number, species, effects):
     if species.inertia is not None and "spin" not in effects:
         legal = "not be given where particles do not spin"
         raise InputError(f"{key}.inertia", species.inertia, legal)
+    if species.spin_velocity is not None and "langevin" not in effects:
+        raise NeedsError(f"{key}.spin_velocity", "effects.langevin")
     return Kind(
         str(index) if species.name is None else species.name,
         number,

@@ -80,7 +80,8 @@ class LocalFlow(Observable):
         properties = (
             np.tile(values, shape) for values in (frames.mass, frames.inertia, frames.radius)
         )
-        motion = ParticleMotion(frames.position, frames.velocity, frames.spin, *properties)
+        spin = frames.thermal_spin if self.system.rotates else frames.spin
+        motion = ParticleMotion(frames.position, frames.velocity, spin, *properties)
         energies = flow_corrected_energies_of(motion, self.system, self.cells)
         return {E_TRANS: energies.E_trans, RATIO: energies.R}
 

@@ -36,6 +36,7 @@ class System(NamedTuple):
     species: tuple[SpeciesGroup, ...] = ()  # empty if all particles have radius a and mass m
     period: float | None = None  # of the schedule, in T: a multiple of the period of the drive
     walls: tuple[str, ...] = ()  # names, as in effects.walls.closed_sides
+    rotates: bool = False  # whether a bath leads spins to the angular velocity of its medium
 
     def only(self, *species: int) -> "System":
         """Return the system with the particles of some `species` only, given by index."""
@@ -127,7 +128,7 @@ class Frame(NamedTuple):
 
     @property
     def thermal_spin(self) -> np.ndarray:
-        """Surface velocities (N, 2 D - 3) without the mean spin of a sheared gas.
+        """Surface velocities (N, 2 D - 3) without the mean spin of shear or of a bath.
 
         They are in a/T; zeros where nothing spins.
         """
@@ -210,7 +211,7 @@ class FrameSeries(NamedTuple):
 
     @property
     def thermal_spin(self) -> np.ndarray:
-        """Surface velocities (k, N, 2 D - 3) without the mean spin of a sheared gas.
+        """Surface velocities (k, N, 2 D - 3) without the mean spin of shear or of a bath.
 
         They are in a/T; zeros where nothing spins.
         """
@@ -260,14 +261,31 @@ def _thermal_velocity(frames: Frame | FrameSeries) -> np.ndarray:
 
 
 def _thermal_spin(frames: Frame | FrameSeries) -> np.ndarray:
-    """Return spins without their mean in a sheared gas, as `frames` has them; zeros without spin.
+    """Return spins without their mean, as `frames` has them; zeros without spin.
 
-    The mean is the surface velocity of a particle with the mean angular velocity.
+    The mean is over a sheared gas, or over each species in a bath whose medium rotates; other spins
+    are returned as they are.
     """
     if frames.spin is None:
         return np.zeros((*frames.position.shape[:-1], 2 * frames.system.dimension - 3))
-    if not frames.system.shear_rate:
-        return frames.spin
-    turning = (frames.mass * frames.inertia * frames.radius)[:, None]
-    momenta = (turning * frames.spin).sum(axis=-2, keepdims=True)
-    return frames.spin - frames.radius[:, None] * (momenta / (turning[:, 0] @ frames.radius))
+    if frames.system.rotates and frames.species_of is not None:
+        thermal = np.empty_like(frames.spin)
+        for index in np.unique(frames.species_of):
+            members = frames.species_of == index
+            thermal[..., members, :] = _without_mean_spin(frames, frames.spin, members)
+        return thermal
+    if frames.system.shear_rate or frames.system.rotates:
+        return _without_mean_spin(frames, frames.spin, slice(None))
+    return frames.spin
+
+
+def _without_mean_spin(frames: Frame | FrameSeries, spin: np.ndarray, members: Any) -> np.ndarray:
+    """Return the spins of some particles without their mean, (..., particles, 2 D - 3).
+
+    The mean is the surface velocity of a particle with the mean angular velocity. `spin` are the
+    spins of `frames`; `members` is an index of particles: a mask (N,) or a slice.
+    """
+    spin, radius = spin[..., members, :], frames.radius[members]
+    turning = (frames.mass[members] * frames.inertia[members] * radius)[:, None]
+    momenta = (turning * spin).sum(axis=-2, keepdims=True)
+    return spin - radius[:, None] * (momenta / (turning[:, 0] @ radius))

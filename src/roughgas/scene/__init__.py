@@ -19,6 +19,7 @@ from msgspec import to_builtins
 from roughgas import theory
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import Effects, build_effects, effects_tuple
+from roughgas.effects.bath import Rotation
 from roughgas.effects.gravity import BodyForce
 from roughgas.effects.settings import SceneContext
 from roughgas.effects.species import Mixture, mixture_of
@@ -63,6 +64,14 @@ def assumes_flow(effects: Effects) -> bool:
     The flow is a linear velocity profile.
     """
     return effects.shear is not None or walls_drive_flow(effects)
+
+
+def rotation_of_medium(effects: Effects) -> Rotation | None:
+    """Return the rotation of a bath's medium, to which its drag leads spins; None without one.
+
+    The rotational energy in R is then relative to the mean spin of each species.
+    """
+    return None if effects.langevin is None else effects.langevin.rotation
 
 
 def has_single_walls(effects: Effects) -> bool:
@@ -119,7 +128,7 @@ def build(experiment: SceneSettings, r: float, beta: float) -> Scene:
     ROUGHNESS.check("roughness beta", beta)
     lengths = experiment.lengths
     mixture = mixture_of(experiment)
-    effects = _effects(experiment.effects, lengths, float(r), float(beta), mixture)
+    effects = _effects(experiment, float(r), float(beta), mixture)
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = closed_axes(effects)
@@ -213,17 +222,24 @@ def check_box(lengths: Sequence[float | None], effects: Effects, largest: float)
             raise InputError(f"box[{k}]", length, f"be a number of at least {min_length:g}")
 
 
-def _effects(settings, lengths, r, beta, mixture):
-    """Return the Effects of a scene from their settings and the species of a mixture, or None.
+def _effects(experiment, r, beta, mixture):
+    """Return the Effects of a scene from its SceneSettings, and its mixture or None.
 
-    `lengths` are the sides of the box; r and beta are the point's.
+    r and beta are the point's.
     """
-    of_species = (
-        ()
-        if mixture is None
-        else (mixture.values_set("restitution"), mixture.values_set("roughness"))
+    settings = experiment.effects
+    context = SceneContext(
+        experiment.lengths,
+        r,
+        beta,
+        settings,
+        *(
+            () if mixture is None else mixture.values_set(quantity)
+            for quantity in ("restitution", "roughness")
+        ),
+        tuple(species.spin_velocity for species in experiment.species),
     )
-    effects = build_effects(settings, SceneContext(lengths, r, beta, settings, *of_species))
+    effects = build_effects(settings, context)
     return effects_tuple(effects | {"species": None if mixture is None else mixture.effect()})
 
 

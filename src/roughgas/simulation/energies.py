@@ -19,7 +19,7 @@ from roughgas.base import NamedValues
 from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
 from roughgas.kernel.state import State
-from roughgas.scene import Scene, shear_rate, walls_drive_flow
+from roughgas.scene import Scene, rotation_of_medium, shear_rate, walls_drive_flow
 from roughgas.scene.settings import SceneSettings
 
 Columns = Mapping[str, np.ndarray]
@@ -50,6 +50,7 @@ def energies(
     shear_rate: float | None = None,
     spins: float | None = None,
     mass: float | None = None,
+    about_mean_spin: bool = False,
 ) -> Energies:
     """Return E_tr = sum m v^2/2 / (N D) and E_rot = sum m q (a w)^2/2 / (N n_r) of each sample.
 
@@ -67,7 +68,7 @@ def energies(
 
     Between walls that move along themselves the mean flow is unknown beforehand. If the total
     `mass` of the particles is given, the flow is the straight line that best fits the velocities of
-    each sample.
+    each sample. With `about_mean_spin` the mean spin alone is subtracted.
     """
     components = component_names(columns, "vv")
     speed_squared = np.asarray(sum(columns[name] for name in components))
@@ -77,11 +78,12 @@ def energies(
         speed_squared = speed_squared + flow
     if mass is not None:
         speed_squared = speed_squared - fitted_flow(columns, mass)[1]
-    if (shear_rate is not None or mass is not None) and spin_squared is not None:
+    flows = shear_rate is not None or mass is not None
+    if (flows or about_mean_spin) and spin_squared is not None:
         mean_spin = sum(columns[name] ** 2 for name in component_names(columns, "w")) / (
             spins or particles
         )
-        spin_squared = spin_squared - mean_spin
+        spin_squared = np.maximum(spin_squared - mean_spin, 0.0)  # rounding errors if all are equal
     translational = speed_squared / (2 * particles * len(components))
     if spin_squared is None or inertia is None:
         return Energies(translational)
@@ -156,19 +158,62 @@ def energies_of(
     `columns` are the samples of the kernel, and `state` is any state of the same gas, which gives
     the number, masses and species of its particles. Energies are in the unit of the columns'
     velocities. In a sheared gas, and between walls that move along themselves, the mean flow and
-    the mean spin are subtracted.
+    the mean spin are subtracted; in a bath whose medium rotates, the mean spin of each species.
     """
     q, bodies = inertia(scene.effects), state.bodies
     rate = None if scene.effects.shear is None else shear_rate(scene)
     flows = walls_drive_flow(scene.effects)
+    rotates = rotation_of_medium(scene.effects) is not None
     if bodies is None:
         number = len(state.changes)
-        return energies(columns, number, q, rate, mass=float(number) if flows else None)
+        return energies(
+            columns, number, q, rate, mass=float(number) if flows else None, about_mean_spin=rotates
+        )
     selected = np.full(len(bodies.mass), True) if species is None else bodies.species == species
-    columns = columns if species is None else species_columns(columns, species)
+    of_selected = columns if species is None else species_columns(columns, species)
+    spins, mass = _sum_of_moments(state, scene, selected), float(np.sum(bodies.mass[selected]))
+    total = energies(
+        of_selected, int(selected.sum()), q, rate, spins, mass if flows else None, rotates
+    )
+    if species is not None or not rotates:
+        return total
+    by_species = species_energies(columns, scene, state)
+    rotational = [np.asarray(species_energy.rotational) for species_energy in by_species]
+    weights = np.bincount(bodies.species)
+    return total._replace(rotational=np.average(rotational, axis=0, weights=weights))
+
+
+def _sum_of_moments(state: State, scene: Scene, selected: np.ndarray) -> float:
+    """Return the sum of moments of inertia of `selected` particles over q of the scene, in m a^2.
+
+    `selected` is a mask (N,) of particles of a mixture.
+    """
+    bodies = state.bodies
+    assert bodies is not None
     moments = (bodies.mass * bodies.inertia * bodies.radius**2)[selected]
-    spins, mass = float(np.sum(moments / (q or 1.0))), float(np.sum(bodies.mass[selected]))
-    return energies(columns, int(selected.sum()), q, rate, spins, mass if flows else None)
+    return float(np.sum(moments / (inertia(scene.effects) or 1.0)))
+
+
+def mean_spins(columns: Columns, scene: Scene, state: State) -> list[np.ndarray]:
+    """Return the mean spins of samples in a bath whose medium rotates, each (samples,) in a/T.
+
+    The first is over all particles, the others are over each species, if there are several. A mean
+    spin is a times the mean angular velocity about the axis of the medium, weighted with the
+    moments of inertia. Other gases have none. Arguments as in `energies_of`.
+    """
+    rotation, bodies = rotation_of_medium(scene.effects), state.bodies
+    if rotation is None:
+        return []
+    name = component_names(columns, "w")[rotation.axis]
+    if bodies is None:
+        return [columns[name] / len(state.changes)]
+    masks = [np.full(len(bodies.mass), True)]
+    masks += [bodies.species == species for species in range(len(bodies.pairs))]
+    names = [name, *(f"{name}[{species}]" for species in range(len(bodies.pairs)))]
+    return [
+        columns[column] / _sum_of_moments(state, scene, mask)
+        for column, mask in zip(names, masks, strict=True)
+    ]
 
 
 def shear_rates(columns: Columns, state: State) -> np.ndarray:

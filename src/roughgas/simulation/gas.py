@@ -354,7 +354,7 @@ class Gas:
 
         `columns` are the samples. Velocities are in the unit of the columns, 2^exponent a/T. In a
         sheared gas, and between walls that move along themselves, the mean flow and the mean spin
-        are subtracted.
+        are subtracted; in a bath whose medium rotates, the mean spin of each species.
         """
         return energies_of(columns, self.scene, self.state)
 

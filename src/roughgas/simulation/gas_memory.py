@@ -21,8 +21,14 @@ import numpy as np
 
 from roughgas.effects import inertia
 from roughgas.effects.walls import Floor, Wall
-from roughgas.scene import Scene, closed_axes, walls_of
-from roughgas.theory import Mixture, collision_rates, friction_changes, temperature_changes
+from roughgas.scene import Scene, closed_axes, rotation_of_medium, walls_of
+from roughgas.theory import (
+    Mixture,
+    collision_rates,
+    friction_changes,
+    mean_spin_decay,
+    temperature_changes,
+)
 from roughgas.theory.mixture_states import kick_power, mixture_contact_values
 from roughgas.theory.mixtures import contact_frequencies, rate_matrix
 from roughgas.theory.relaxation import (
@@ -69,10 +75,11 @@ def gas_memory(
         return GasMemory(math.inf, math.inf, math.inf)
     gas = RateEquations(scene, state, mixture, packing)
     relaxation = gas.contacts() + gas.walls() + np.diag(gas.speed_gain_rates() - gas.drag_rates())
-    of_R = _decay_time(2.0, ratio_relaxation(relaxation, gas.heating(), gas.capacity))
-    slowest = slowest_relaxation(relaxation + gas.accelerated_contacts())
+    spin_decay = _mean_spin_decay(scene, state)
+    ratio_decay = min(ratio_relaxation(relaxation, gas.heating(), gas.capacity), spin_decay)
+    slowest = min(slowest_relaxation(relaxation + gas.accelerated_contacts()), spin_decay)
     return GasMemory(
-        of_R=_with_total_momentum(of_R, scene, state),
+        of_R=_with_total_momentum(_decay_time(2.0, ratio_decay), scene, state),
         energies=_decay_time(1.0, slowest),
         flow=_decay_time(1.0, _flow_decay(scene, state)),
     )
@@ -262,6 +269,20 @@ def drag_rates(scene: Scene) -> tuple[float, float]:
     return -math.log(bath.velocity_factor) / bath.interval, -math.log(
         bath.spin_factor
     ) / bath.interval
+
+
+def _mean_spin_decay(scene: Scene, state: ThermalState) -> float:
+    """Return the decay rate of the mean spin (1/T) in a bath whose medium rotates; else infinity.
+
+    In a mixture, and with friction, it is the rate due to drag alone, a lower bound.
+    """
+    effects, (_, spin_drag) = scene.effects, drag_rates(scene)
+    if rotation_of_medium(effects) is None:
+        return math.inf
+    if effects.species is not None or effects.friction is not None:
+        return spin_drag
+    per_contact = mean_spin_decay(scene.roughness, len(scene.box), inertia(effects))
+    return spin_drag + state.frequency * float(per_contact)
 
 
 def spin_share(scene: Scene) -> float:

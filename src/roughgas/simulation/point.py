@@ -297,7 +297,8 @@ def _theory_attributes(scene, experiment):
     if effects.thermostat is not None:
         attributes["spin_share"] = experiment.effects["thermostat"].spin_share
     if effects.langevin is not None:
-        attributes[LANGEVIN_ATTRIBUTE] = json.dumps(experiment.raw["effects"]["langevin"])
+        rate = {} if effects.shear is None else {"shear_rate": shear_rate(scene)}
+        attributes[LANGEVIN_ATTRIBUTE] = json.dumps(experiment.raw["effects"]["langevin"] | rate)
     if experiment.species:
         species_settings = {
             name: experiment.raw.get(name) or [] for name in ("species", "species_pairs")

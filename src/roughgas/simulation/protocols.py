@@ -9,7 +9,7 @@ from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
 from roughgas.effects.walls import closed_sides
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, shear_rate, walls_of
+from roughgas.scene import Scene, rotation_of_medium, shear_rate, walls_of
 from roughgas.scene.initial import check as check_scene
 from roughgas.simulation import cooling, stages, steady
 from roughgas.simulation.energies import Columns
@@ -105,6 +105,7 @@ def observed_system(scene: Scene, experiment: Experiment) -> "System":
         species=() if mixture is None else tuple(map(_species_group, mixture.kinds)),
         period=getattr(schedule, "period", None),
         walls=tuple(closed_sides(walls_of(effects), len(scene.box))),
+        rotates=rotation_of_medium(effects) is not None,
     )
 
 

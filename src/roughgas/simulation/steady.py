@@ -16,11 +16,12 @@ from roughgas.base.fields import described
 from roughgas.effects import inertia
 from roughgas.effects.gravity import BodyForce
 from roughgas.effects.species import packing
-from roughgas.scene import Scene, assumes_flow, theory_mixture, walls_of
+from roughgas.scene import Scene, assumes_flow, rotation_of_medium, theory_mixture, walls_of
 from roughgas.simulation.energies import (
     Columns,
     Energies,
     energies,
+    mean_spins,
     ratio,
     shear_rates,
     species_energies,
@@ -29,6 +30,7 @@ from roughgas.simulation.energy_averages import (
     contact_averages,
     driven_species_averages,
     mean_energies_and_R,
+    mean_spin_averages,
     trust_of_means,
     vertical_share,
 )
@@ -298,8 +300,9 @@ def _measured_variables(
     """Return the variables of a run by name, from all its samples `rows` (columns by name)."""
     scene, every, per_period = gas.scene, schedule.sample_every, samples_per_period(schedule)
     planned, length = _planned_samples(schedule)
-    series = gas.energies(rows)
-    first, settled = _measurement_start(series, planned, length, per_period)
+    series, spins = gas.energies(rows), mean_spins(rows, scene, gas.state)
+    signals = [*series.present_components(), *spins]
+    first, settled = _measurement_start(signals, planned, length, per_period)
     collisions_before = rows["collisions"][first - 1] if first else gas_start.collisions
     window = series.map(lambda values: values[first:])
     species = [
@@ -322,6 +325,7 @@ def _measured_variables(
         **contact_averages(rows, first, per_period, inertia_of_contact_sums(scene), gas_start.sums),
         **_vertical_share(gas, rows, window.translational, per_period),
         **_unsubtracted_energies(gas, rows, first),
+        **mean_spin_averages([spin[first:] for spin in spins], per_period),
         **driven_species_averages(
             species, per_period, max(1, per_period // SERIES_VALUES_PER_PERIOD)
         ),
@@ -430,13 +434,14 @@ def _transient_relaxations(waited: float, measured: MeasuredLength, slowest: flo
     return window_relaxations * waited / measured.collisions + math.log(window_relaxations)
 
 
-def _measurement_start(series, planned, length, per_period):
+def _measurement_start(signals, planned, length, per_period):
     """Return the index of the first measured sample, and whether the samples from there are steady.
 
-    It follows whole periods of `per_period` samples. `series` are the energies (samples,),
-    `planned` and `length` the planned numbers of samples of equilibration and measurement.
+    It follows whole periods of `per_period` samples. `signals` are the energies and the mean spins,
+    each (samples,), `planned` and `length` the planned numbers of samples of equilibration and
+    measurement.
     """
-    means = [period_means(energy, per_period) for energy in series.present_components()]
+    means = [period_means(signal, per_period) for signal in signals]
     first = -(-planned // per_period) * per_period
     start = per_period * detect_start(*means, planned=first // per_period)
     if planned + length - start < MIN_SHARE_LEFT * length:
@@ -476,15 +481,16 @@ def _vertical_share(gas, rows, translational, per_period):
 
 
 def _unsubtracted_energies(gas, rows, first):
-    """Return energies and R of a sheared gas that include its mean flow and mean spin, by name.
+    """Return energies and R that include a mean flow and a mean spin, by name.
 
-    They are averages over the samples `rows` from the index `first` on. Without such a flow the
-    result is empty.
+    They are averages over the samples `rows` from the index `first` on. The result is empty without
+    such a flow, and outside of baths whose medium rotates.
     """
     effects, variables = gas.scene.effects, {}
-    if not assumes_flow(effects):
+    flow_is_assumed = assumes_flow(effects)
+    if not flow_is_assumed and rotation_of_medium(effects) is None:
         return {}
-    if effects.shear is None:
+    if flow_is_assumed and effects.shear is None:
         variables["shear_rate"] = shear_rates(rows, gas.state)[first:].mean()
     series = energies(rows, gas.particles, inertia(effects))
     window = series.map(lambda energy: energy[first:])

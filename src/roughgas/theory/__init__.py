@@ -13,6 +13,11 @@ per particle: a collision counts for both its particles.
 """
 
 from roughgas.theory.arguments import moment_of_inertia
+from roughgas.theory.baths import (
+    mean_spin_decay,
+    mean_spin_of_spinners,
+    pressure_in_sheared_bath,
+)
 from roughgas.theory.closed_forms import (
     a_G,
     b_G,

@@ -41,7 +41,7 @@ SPECIES_ATTRIBUTE = "species_json"
 """Attribute of datasets of mixtures that describes their species: see `prediction`."""
 AMOUNTS = "fraction", "number"
 MATERIAL = {"restitution": "restitution r", "roughness": "roughness beta", "mu": "friction mu"}
-KEYS = (*AMOUNTS, "radius", "mass", "inertia", "name", *MATERIAL)
+KEYS = (*AMOUNTS, "radius", "mass", "inertia", "name", *MATERIAL, "spin_velocity")
 FRACTIONS_TOLERANCE = 1e-6
 """Largest deviation of the sum of fractions from 1."""
 QUADRATURE_NODES = 6
@@ -107,8 +107,8 @@ def mixture(species, r, beta, dimension=2, inertia=None, mu=np.inf, pairs=()) ->
     distribution, which is represented by a few radii; `mass`, by default radius^D; and `inertia`,
     `restitution`, `roughness` and `mu`, which default to the arguments `inertia`, `r`, `beta` and
     `mu` (coefficient of friction). A contact of two species has the means of their r, beta and mu,
-    unless `pairs` (`species_pairs` in config.yaml) has other values. Raises InputError for illegal
-    species.
+    unless `pairs` (`species_pairs` in config.yaml) has other values. A `spin_velocity`, of the
+    medium of a bath, changes no contact. Raises InputError for illegal species.
     """
     dimension = check_dimension(dimension)
     inertia = moment_of_inertia(dimension) if inertia is None else inertia
