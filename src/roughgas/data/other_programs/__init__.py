@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from roughgas.base import InputError
 from roughgas.data.other_programs import extended_xyz, gsd, lammps
 from roughgas.data.other_programs.particles import FileParticles, Units, in_gas_units
-from roughgas.data.other_programs.text import LEGAL_FILE
 
 if TYPE_CHECKING:
     import xarray
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["LAST_FRAME", "Units", "is_of_other_program", "read_frame"]
 
 LAST_FRAME = -1
+UNITS_OF_FIRST_SPECIES = Units()
 RECOGNISED_BYTES = 100_000
 Reader = Callable[[str | Path, int], FileParticles]
 
@@ -28,7 +28,7 @@ def is_of_other_program(path: str | Path) -> bool:
 
 
 def read_frame(
-    path: str | Path, frame: int = LAST_FRAME, units: Units = Units()
+    path: str | Path, frame: int = LAST_FRAME, units: Units = UNITS_OF_FIRST_SPECIES
 ) -> "xarray.Dataset":
     """Return the particles in a frame of a file, in the units of a gas, as the start of a run.
 

@@ -71,16 +71,16 @@ def read_extended_xyz(path: str | Path, frame: int) -> FileParticles:
         chosen = chosen_frame(_frames(file), frame, path)
     origin, lengths = chosen.box()
     table = chosen.rows.table()
-    table.require("pos*x")
-    position = table.vectors("pos**")
+    table.require("posx")
+    position = table.vectors("pos*")
     mass = table.positive("masses", "mass")
-    velocity = table.vectors("velo**", "vel**", "velocity**", "velocities**")
+    velocity = table.vectors("velo*", "vel*", "velocity*", "velocities*")
     if velocity is None and mass is not None:
-        momenta = table.vectors("momenta**")
+        momenta = table.vectors("momenta*")
         velocity = None if momenta is None else momenta / mass[:, None]
     if velocity is None:
-        table.require("velo")
-    omega = table.vectors("omega**", "angular_velocity**")
+        table.require("velox")
+    omega = table.vectors("omega*", "angular_velocity*")
     is_own = chosen.keys.get("source") == OWN_SOURCE
     diameter, radius = table.positive("diameter"), table.positive("radius")
     species, names = _species(table)
@@ -115,8 +115,8 @@ def _frames(file: TextFile) -> Iterator[XyzFrame]:
 def _columns(file: TextFile, properties: str) -> list[str]:
     """Return the names of the columns that the value of the key Properties lists.
 
-    The components of a vector have an axis at their ends, after `*`. Raises InputError for a value
-    of another form.
+    The components of a vector have the letter of an axis at their ends. Raises InputError for a
+    value of another form.
     """
     listed = PROPERTIES.findall(properties)
     if not listed or ":".join(":".join(entry) for entry in listed) != properties:
@@ -126,7 +126,7 @@ def _columns(file: TextFile, properties: str) -> list[str]:
         if int(width) == 1:
             columns.append(name)
         elif name in VECTORS and int(width) <= len(AXES):
-            columns += [f"{name}*{axis}" for axis in AXES[: int(width)]]
+            columns += [f"{name}{axis}" for axis in AXES[: int(width)]]
         else:
             columns += [f"{name}[{k}]" for k in range(int(width))]
     return columns

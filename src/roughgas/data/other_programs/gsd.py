@@ -11,7 +11,7 @@ import numpy as np
 
 from roughgas.base import InputError, import_extra, on_one_line, short_repr
 from roughgas.data.other_programs.particles import FileParticles
-from roughgas.data.other_programs.text import check_frame
+from roughgas.data.other_programs.text import MAX_PARTICLES, check_frame
 
 MAGIC = bytes.fromhex("65df65df65df65df")
 BOX, ORIGIN = "box", "origin"
@@ -30,16 +30,18 @@ def read_gsd(path: str | Path, frame: int) -> FileParticles:
     ImportError without the package gsd.
     """
     shot = _frame(path, frame)
-    box = np.array(shot.log.get(BOX, shot.configuration.box), float)
-    if box.shape != (6,) or not np.isfinite(box).all() or box[3:].any():
-        legal = "be three sides without tilt"
-        raise InputError(f"box of {path}", short_repr(box.tolist()), legal)
-    dimension = int(shot.configuration.dimensions)
+    dimension, particles = int(shot.configuration.dimensions), shot.particles
+    box = _logged(path, shot, BOX, shot.configuration.box)
     lengths = box[:3]
-    if np.any(lengths[:dimension] <= 0.0):
-        raise InputError(f"box of {path}", short_repr(box.tolist()), "be positive sides")
-    origin = np.array(shot.log.get(ORIGIN, -0.5 * lengths), float)
-    particles = shot.particles
+    if box[3:].any() or np.any(lengths[:dimension] <= 0.0):
+        legal = "be positive sides, without tilt"
+        raise InputError(f"{path}, box", short_repr(box.tolist()), legal)
+    if not 1 <= particles.N <= MAX_PARTICLES:
+        legal = f"be a number in [1, {MAX_PARTICLES}]"
+        raise InputError(f"{path}, number of particles", particles.N, legal)
+    for row in np.flatnonzero(particles.typeid >= len(particles.types)):
+        legal = f"be below {len(particles.types)}, the number of types"
+        raise InputError(f"{path}, typeid of particle {row}", particles.typeid[row], legal)
     names = ("position", "velocity", "angmom", "orientation", "moment_inertia", "diameter", "mass")
     values = {name: _field(path, particles, name) for name in names}
     for name in ("diameter", "mass"):
@@ -54,7 +56,7 @@ def read_gsd(path: str | Path, frame: int) -> FileParticles:
         mass=values["mass"],
         species=np.array(particles.typeid, np.int64),
         names=tuple(particles.types),
-        origin=origin,
+        origin=_logged(path, shot, ORIGIN, -0.5 * lengths),
         lengths=lengths,
         dimension=dimension,
         inertia=inertia,
@@ -75,6 +77,16 @@ def _frame(path: str | Path, number: int) -> Any:
         legal = f"be GSD that the package gsd reads: {type(error).__name__}: {error}"
         raise InputError("file", path, on_one_line(legal)) from error
     return shot
+
+
+def _logged(path: str | Path, shot: Any, name: str, default: Any) -> np.ndarray:
+    """Return the array `name` in the log of a frame, or the default; raise InputError for another
+    shape and for numbers that are not finite."""
+    values = np.array(shot.log.get(name, default), float)
+    if values.shape != np.shape(default) or not np.isfinite(values).all():
+        legal = f"be {len(default)} finite numbers"
+        raise InputError(f"{path}, {name}", short_repr(values.tolist()), legal)
+    return values
 
 
 def _field(path: str | Path, particles: Any, name: str) -> np.ndarray:

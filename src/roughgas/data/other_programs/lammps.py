@@ -213,6 +213,8 @@ def _header_and_sections(
             if not low < high:
                 file.refuse(line, "be two rising numbers")
             bounds[text[-3]] = low, high
+    if not count:
+        raise InputError(f"{file.path}: header", "(end)", "have a number of atoms")
     return count, [*bounds.values()], sections
 
 

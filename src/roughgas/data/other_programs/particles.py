@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roughgas.base import InputError, Interval
-from roughgas.data.states import QUANTITIES
+from roughgas.data.states import AXES, QUANTITIES, READ_FROM
 
 if TYPE_CHECKING:
     import xarray
 
 UNIT = Interval("(0, inf)")
 LARGEST_SPECIES = 1000
+FARTHEST = 1e6  # of particles from the box, in its sides
 
 
 class Units(NamedTuple):
@@ -65,6 +66,7 @@ def in_gas_units(particles: FileParticles, units: Units, frame: str) -> "xarray.
     time = UNIT.check("unit_time", units.time)
     axes, number = particles.dimension, len(particles.position)
     radius = np.full(number, length) if particles.radius is None else particles.radius
+    _check_distance(particles, frame)
     values = {
         "position": (particles.position - particles.origin)[:, :axes] / length,
         "velocity": particles.velocity[:, :axes] * (time / length),
@@ -92,7 +94,17 @@ def in_gas_units(particles: FileParticles, units: Units, frame: str) -> "xarray.
         name: (QUANTITIES[name].dims, array, {"units": QUANTITIES[name].unit})
         for name, array in values.items()
     }
-    return xarray.Dataset(variables, coordinates, {"frame": frame})
+    return xarray.Dataset(variables, coordinates, {READ_FROM: frame})
+
+
+def _check_distance(particles: FileParticles, frame: str) -> None:
+    """Raise InputError for a particle so far outside the box that its image in it is inexact."""
+    sides = (particles.position - particles.origin)[:, : particles.dimension]
+    sides = np.abs(sides) / particles.lengths[: particles.dimension]
+    for row, axis in np.argwhere(sides > FARTHEST):
+        key = f"{frame}: {AXES[3][axis]} of particle {row}"
+        legal = f"lie within {FARTHEST:g} sides of the box"
+        raise InputError(key, particles.position[row, axis], legal)
 
 
 def _unit(

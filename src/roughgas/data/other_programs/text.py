@@ -166,12 +166,11 @@ class Table(NamedTuple):
                 return np.pad(self.values(*names), ((0, 0), (0, 3 - len(names))))
         return None
 
-    def require(self, name: str) -> NoReturn | None:
+    def require(self, name: str) -> None:
         """Raise InputError unless there is a column `name`, or one of several, as in "x or xs"."""
-        if {*name.split(" or ")} & {*self.columns}:
-            return None
-        key = f"{self.path}, above line {min(self.numbers)}: columns"
-        raise InputError(key, short_repr(" ".join(self.columns)), f"have {name} among them")
+        if not {*name.split(" or ")} & {*self.columns}:
+            key = f"{self.path}, above line {min(self.numbers)}: columns"
+            raise InputError(key, short_repr(" ".join(self.columns)), f"have {name} among them")
 
     def refuse(self, row: int, column: str, value: object, legal: str) -> NoReturn:
         """Raise InputError for a `value` in a row, counted from 0, and a column."""
