@@ -13,7 +13,7 @@ from roughgas.base import InputError, import_extra, on_one_line, short_repr
 from roughgas.data.other_programs.particles import FileParticles
 from roughgas.data.other_programs.text import MAX_PARTICLES, check_frame
 
-MAGIC = bytes.fromhex("65df65df65df65df")
+MAGIC = bytes.fromhex("df65df65df65df65")
 BOX, ORIGIN = "box", "origin"
 """Entries of the log of roughgas: the box in double precision, and the corner of the gas."""
 

@@ -28,9 +28,14 @@ class TextFile:
         self.path, self.number, self._lines = path, 0, lines
 
     def __iter__(self) -> Iterator[str]:
-        """Yield the remaining lines, without white space at their ends."""
+        """Yield the remaining lines, without white space at their ends.
+
+        Raises InputError for a line without an end: its last number may be cut off.
+        """
         for line in self._lines:
             self.number += 1
+            if not line.endswith("\n"):
+                self.refuse(line, "end with a new line: the file is cut off")
             yield line.strip()
 
     def line(self, content: str) -> str:
