@@ -5,73 +5,25 @@ tests/data/other_programs/README.md says how its files were made.
 
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 import gsd.hoomd
 import numpy as np
 import pytest
 import xarray
+from tests.other_programs import FOLDER, disks_in_gas_units, spheres_in_gas_units
 
 from roughgas import read_frame
 from roughgas.base import InputError
 from roughgas.data.other_programs import is_of_other_program
 from roughgas.data.trajectory import write_trajectory
 
-FOLDER = Path(__file__).parent / "other_programs"
 DISKS = ("disks.dump", "disks.data", "disks.xyz")
 SPHERES = ("spheres.dump", "spheres.data", "spheres.gsd")
 NO_FORMAT = r"^file = .*: must be a LAMMPS data or dump file, extended XYZ, or GSD"
 EXACT = {"disks.dump", "spheres.dump"}
 EIGHT_DIGITS = 2e-7  # of data files (of LAMMPS) 17, of extended XYZ (of ASE) 8, of boxes of GSD 7
-
-
-def columns_of(name, frame):
-    """(columns by name, bounds (3, 2) of the box) of a frame of a dump, in the order of `id`."""
-    parts = (FOLDER / name).read_text().split("ITEM: BOX BOUNDS pp pp pp\n")[1:]
-    lines = parts[frame].splitlines()
-    start = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
-    names = lines[start].split()[2:]
-    end = start + 1
-    while end < len(lines) and not lines[end].startswith("ITEM"):
-        end += 1
-    table = np.array([line.split() for line in lines[start + 1 : end]], float)
-    table = table[np.argsort(table[:, names.index("id")])]
-    return dict(zip(names, table.T, strict=True)), np.array(
-        [line.split() for line in lines[:3]], float
-    )
-
-
-def disks_in_gas_units(frame):
-    """Variables of a frame of disks.dump, by hand: a is 0.5 and m is pi/4 in its units."""
-    columns, bounds = columns_of("disks.dump", frame)
-    vector = {name: np.stack([columns[f"{name}{axis}"] for axis in "xy"], 1) for name in ("", "v")}
-    return {
-        "position": (vector[""] - bounds[:2, 0]) * 2,
-        "velocity": vector["v"] * 2,
-        "spin": columns["omegaz"][:, None],  # (a w)/a
-        "radius": np.ones(16),
-        "mass": columns["mass"] / columns["mass"][0],
-        "box": np.array([20.0, 16.0]),
-    }
-
-
-def spheres_in_gas_units():
-    """Variables of the last frame of spheres.dump, by hand: a is 1 mm, T is 5 ms."""
-    columns, _ = columns_of("spheres.dump", -1)
-    x, v, w = (
-        np.stack([columns[stem.replace("*", axis)] for axis in "xyz"], 1)
-        for stem in ("*s", "v*", "omega*")
-    )
-    radius = columns["diameter"] / 0.002
-    return {
-        "position": x * 12,
-        "velocity": v * 5,
-        "spin": w * 0.005 * radius[:, None],
-        "radius": radius,
-        "mass": columns["mass"] / columns["mass"].min(),
-        "species_of": columns["type"] - 1,
-        "box": np.full(3, 12.0),
-    }
 
 
 def assert_alike(dataset, expected, name):
@@ -204,6 +156,73 @@ def test_a_file_without_radii_or_spins_is_read_in_a_stated_unit(tmp_path):
         InputError, match=r"^unit_length = \(nothing\): must be given: .* no radii$"
     ):
         read_frame(path)
+
+
+# ----------------------------------------------------------------- docs/coming_from.md
+
+PAGE = (Path(__file__).parents[2] / "docs" / "coming_from.md").read_text()
+
+
+def block(begin):
+    """The code of the page that begins so."""
+    blocks = re.findall(r"^```.*?\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    return next(text for text in blocks if text.startswith(begin))
+
+
+def test_the_page_has_the_input_of_lammps_with_the_springs_of_its_formulas():
+    text = (FOLDER / "disks.in").read_text()
+    assert block("# 16 rough inelastic disks") == text
+    words = re.search(r"gran/hooke/history (.*)", text)[1].split()
+    normal, tangential, damping, *others = map(float, words)
+    r, beta, q, M = 0.9, 0.5, 0.5, np.pi / 8
+    contact_time = np.pi * np.sqrt(M / normal * (1 + (np.log(r) / np.pi) ** 2))
+    assert damping == pytest.approx(-2 * np.log(r) / contact_time, rel=1e-12)
+    expected = q * M / (1 + q) * (np.arccos(-beta) / contact_time) ** 2
+    assert tangential == pytest.approx(expected, rel=1e-12) and others == [0, 1e4, 0]
+
+
+DYNAMO = """<?xml version="1.0"?>
+<DynamOconfig version="1.5.0"><Simulation><SimulationSize x="6" y="7" z="8"/></Simulation>
+<ParticleData OrientationData="Y">
+<Pt ID="0"><P x="-3" y="1" z="2"/><V x="1" y="2" z="3"/><O x=".1" y=".2" z=".3"/>
+<U w="1" x="0" y="0" z="0"/></Pt>
+<Pt ID="1"><P x="1" y="-3.5" z="0"/><V x="4" y="5" z="6"/><O x="0" y="0" z="0"/>
+<U w="1" x="0" y="0" z="0"/></Pt>
+</ParticleData></DynamOconfig>
+"""
+MERCURY = """2 0 -1 0 0 5 6 7
+0 1 2 3 4 5 .5 0 0 0 .1 .2 .3 0
+4 4 4 -3 -4 -5 .5 0 0 0 0 0 0 0
+2 0.5 -1 0 0 5 6 7
+1 1 2 3 4 5 .5 0 0 0 .1 .2 .3 0
+4 3 4 -3 -4 -5 .5 0 0 0 0 0 0 0
+"""
+
+
+@pytest.mark.parametrize("spins", [True, False])
+def test_a_configuration_of_dynamo_becomes_extended_xyz(spins, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = DYNAMO if spins else re.sub(r"<O .*?/>", "", DYNAMO)
+    Path("config.xml").write_text(text)
+    exec(compile(block("from xml.etree"), "page", "exec"), {})
+    frame = read_frame("gas.xyz")
+    assert frame.position.values.tolist() == [[0, 9, 12], [8, 0, 8]]
+    assert frame.velocity.values.tolist() == [[2, 4, 6], [8, 10, 12]]
+    assert frame.box.values.tolist() == [12, 14, 16]
+    if spins:  # a w/a
+        assert frame.spin.values.tolist() == [[0.1, 0.2, 0.3], [0, 0, 0]]
+    assert spins == ("spin" in frame)
+
+
+@pytest.mark.skipif(not shutil.which("awk"), reason="there is no awk")
+def test_a_data_file_of_mercurydpm_becomes_a_dump(tmp_path):
+    (tmp_path / "gas.data").write_text(MERCURY)
+    subprocess.run(block("awk"), shell=True, check=True, cwd=tmp_path)
+    first, second = (read_frame(tmp_path / "gas.dump", number) for number in (0, 1))
+    assert first.position.values.tolist() == [[2, 2, 4], [10, 8, 8]]
+    assert first.spin.values.tolist() == [[0.1, 0.2, 0.3], [0, 0, 0]]
+    assert first.box.values.tolist() == [12, 12, 14]
+    assert (second.position - first.position).values.tolist() == [[2, 0, 0], [0, -2, 0]]
 
 
 # ----------------------------------------------------------------- refusals
