@@ -9,8 +9,8 @@ FOLDER = Path(__file__).parent / "data" / "other_programs"
 
 def columns_of(name, frame):
     """(columns by name, bounds (3, 2) of the box) of a frame of a dump, in the order of `id`."""
-    parts = (FOLDER / name).read_text().split("ITEM: BOX BOUNDS pp pp pp\n")[1:]
-    lines = parts[frame].splitlines()
+    frames = (FOLDER / name).read_text().split("ITEM: BOX BOUNDS pp pp pp\n")[1:]
+    lines = frames[frame].splitlines()
     start = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     names = lines[start].split()[2:]
     end = start + 1

@@ -1,4 +1,4 @@
-"""Frames of LAMMPS, extended XYZ and GSD: what is read, and what is refused.
+"""Frames of LAMMPS, extended XYZ and GSD: their particles in units of a gas, and refusals.
 
 tests/data/other_programs/README.md says how its files were made.
 """
@@ -173,12 +173,12 @@ def test_the_page_has_the_input_of_lammps_with_the_springs_of_its_formulas():
     text = (FOLDER / "disks.in").read_text()
     assert block("# 16 rough inelastic disks") == text
     words = re.search(r"gran/hooke/history (.*)", text)[1].split()
-    normal, tangential, damping, *others = map(float, words)
+    normal, tangential, damping, *limits = map(float, words)
     r, beta, q, M = 0.9, 0.5, 0.5, np.pi / 8
     contact_time = np.pi * np.sqrt(M / normal * (1 + (np.log(r) / np.pi) ** 2))
     assert damping == pytest.approx(-2 * np.log(r) / contact_time, rel=1e-12)
     expected = q * M / (1 + q) * (np.arccos(-beta) / contact_time) ** 2
-    assert tangential == pytest.approx(expected, rel=1e-12) and others == [0, 1e4, 0]
+    assert tangential == pytest.approx(expected, rel=1e-12) and limits == [0, 1e4, 0]
 
 
 DYNAMO = """<?xml version="1.0"?>
@@ -319,14 +319,14 @@ def spoiled(content, rng):
     """A copy of bytes with one to three of them flipped, replaced or cut out."""
     content = bytearray(content)
     for _ in range(rng.integers(1, 4)):
-        place = rng.integers(len(content))
+        start = rng.integers(len(content))
         damage = rng.choice(["flip", "replace", "cut"])
         if damage == "flip":
-            content[place] ^= 1 << rng.integers(8)
+            content[start] ^= 1 << rng.integers(8)
         elif damage == "replace":
-            content[place] = rng.choice(list(b'-+.eE nN0\n\t:"=#'))
+            content[start] = rng.choice(list(b'-+.eE nN0\n\t:"=#'))
         else:
-            del content[place : place + rng.integers(1, 30)]
+            del content[start : start + rng.integers(1, 30)]
     return bytes(content)
 
 

@@ -80,26 +80,26 @@ class Start(NamedTuple):
     def options(self) -> list[str]:
         """Return the words of a command line that repeat these options."""
         words = [] if self.file is None else ["--from", self.file]
-        return words + [f"{name}={text}" for name, text in self._given().items()]
+        return words + [f"{name}={text}" for name, text in self._named_options().items()]
 
     def dataset(self) -> Any:
         """Return the dataset of the state to begin with; there is a file.
 
         Raises InputError for a file without one, and for illegal options.
         """
-        given = self._given()
+        options = self._named_options()
         if self.file and other_programs.is_of_other_program(self.file):
             units = {
-                key: number(name, given[name], UNIT)
+                key: number(name, options[name], UNIT)
                 for key in other_programs.Units._fields
-                if (name := f"--unit-{key}") in given
+                if (name := f"--unit-{key}") in options
             }
             frame = other_programs.LAST_FRAME
-            if "--frame" in given:
-                frame = _frame_number(given["--frame"])
+            if "--frame" in options:
+                frame = _frame_number(options["--frame"])
             return other_programs.read_frame(self.file, frame, other_programs.Units(**units))
-        if given:
-            name, text = next(iter(given.items()))
+        if options:
+            name, text = next(iter(options.items()))
             raise InputError(name, text, "come with a file of another program: --from FILE")
         point = read_point(self.file or "")
         if "last_position" not in point:
@@ -107,7 +107,7 @@ class Start(NamedTuple):
             raise InputError("--from", self.file, legal)
         return point
 
-    def _given(self) -> dict[str, str]:
+    def _named_options(self) -> dict[str, str]:
         """Return the options beside the file that are not omitted, by name."""
         texts = zip(self._fields[1:], self[1:], strict=True)
         return {f"--{key.replace('_', '-')}": text for key, text in texts if text is not None}

@@ -32,8 +32,8 @@ def read_frame(
 ) -> "xarray.Dataset":
     """Return the particles in a frame of a file, in the units of a gas, as the start of a run.
 
-    The frame counts from 0, or from the end if negative. The variables are those of
-    `roughgas.data.states`, and `box` (axis). Raises InputError for an unknown format, another
+    The frame counts from 0, or from the end if negative. Variables have the names and units of
+    `roughgas.data.states`. Raises InputError for an unknown format, another
     content, and a unit that is needed; ImportError without the package gsd for its files; OSError.
     """
     reader = _reader(path)

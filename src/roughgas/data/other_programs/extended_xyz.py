@@ -1,7 +1,7 @@
 """Extended XYZ: a number of particles, a line of KEY=VALUE with the names of columns, the columns.
 
-The format and the names of columns are those of OVITO's page on XYZ files and of its exporter, and
-those of ASE, which writes momenta in place of velocities.
+OVITO's page on XYZ files and its exporter define the format and the names of columns. ASE writes
+momenta in place of velocities.
 """
 
 import re
@@ -101,7 +101,8 @@ def read_extended_xyz(path: str | Path, frame: int) -> FileParticles:
 
 
 def _frames(file: TextFile) -> Iterator[XyzFrame]:
-    """Yield the frames of a file; raise InputError where it is cut off, and for another content."""
+    """Yield the frames of a file; raise InputError for a file that is cut off, and for another
+    content."""
     for line in file:
         if not line:
             continue
@@ -138,7 +139,7 @@ def _species(table: Table) -> tuple[np.ndarray, tuple[str, ...]]:
     The column `kind` of roughgas has numbers; names are numbered as they appear first.
     """
     if "kind" in table.columns:
-        return table.whole("kind", 0, LARGEST_SPECIES), ()
+        return table.integers("kind", 0, LARGEST_SPECIES), ()
     column = next((name for name in ("species", "type") if name in table.columns), None)
     words = [""] * len(table.words) if column is None else table.texts(column)
     names = list(dict.fromkeys(words))

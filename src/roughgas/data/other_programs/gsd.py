@@ -1,6 +1,6 @@
 """GSD, the format of HOOMD-blue, by the package gsd.
 
-Fields are those of its schema hoomd. The angular momentum is the quaternion P = 2 q (0, L) with the
+Its schema hoomd defines the fields. The angular momentum is the quaternion P = 2 q (0, L) with the
 orientation q and the angular momentum L in the frame of the body, so that P q* / 2 has L in space.
 """
 

@@ -1,7 +1,7 @@
 """LAMMPS: data files of atom_style sphere, as write_data makes them, and text files of dump custom.
 
-The formats are those of the pages read_data, write_data and dump of the LAMMPS documentation. ASE
-reads both files, but neither diameters nor angular velocities (ase.io.lammpsdata has no style
+The pages read_data, write_data and dump of the LAMMPS documentation define the formats. ASE reads
+both files, but neither diameters nor angular velocities (ase.io.lammpsdata has no style
 sphere, ase.io.lammpsrun leaves out columns such as radius and omegax).
 """
 
@@ -100,7 +100,8 @@ def read_dump(path: str | Path, frame: int) -> FileParticles:
 
 
 def _dump_frames(file: TextFile) -> Iterator[DumpFrame]:
-    """Yield the frames of a dump; raise InputError where it is cut off, and for another content."""
+    """Yield the frames of a dump; raise InputError for a dump that is cut off, and for another
+    content."""
     count, box = None, None
     for line in file:
         name = line.removeprefix(ITEM)
@@ -137,13 +138,13 @@ def _species(table: Table) -> np.ndarray:
     """Return the species (N,) of particles, from 0: the types of LAMMPS count from 1."""
     if "type" not in table.columns:
         return np.zeros(len(table.words), np.int64)
-    return table.whole("type", 1, LARGEST_SPECIES) - 1
+    return table.integers("type", 1, LARGEST_SPECIES) - 1
 
 
 def read_data(path: str | Path, frame: int) -> FileParticles:
     """Return the particles in a data file. Raises InputError for another content.
 
-    The file has one frame. Masses are those of spheres, also of disks, as LAMMPS has them.
+    The file has one frame. Also disks have the masses of spheres, as LAMMPS computes them.
     """
     check_frame(frame, 1, path)
     with text_file(path) as file:

@@ -86,10 +86,12 @@ def in_gas_units(particles: FileParticles, units: Units, frame: str) -> "xarray.
         if particles.inertia is not None and np.any(surface_velocity):
             values["inertia"] = particles.inertia / (particles.mass * radius**2)
     coordinates = {}
-    if particles.species.any() or np.ptp(radius) > 0.0:
+    if np.ptp(particles.species) > 0:
         values["species_of"] = particles.species
-        if len(particles.names) > 1:
+        if particles.names:
             coordinates["species"] = list(particles.names)
+    elif np.ptp(radius) > 0.0:
+        values["species_of"] = np.zeros(number, np.int64)
     variables = {
         name: (QUANTITIES[name].dims, array, {"units": QUANTITIES[name].unit})
         for name, array in values.items()
@@ -98,7 +100,7 @@ def in_gas_units(particles: FileParticles, units: Units, frame: str) -> "xarray.
 
 
 def _check_distance(particles: FileParticles, frame: str) -> None:
-    """Raise InputError for a particle so far outside the box that its image in it is inexact."""
+    """Raise InputError for a particle at a distance from the box that makes its image inexact."""
     sides = (particles.position - particles.origin)[:, : particles.dimension]
     sides = np.abs(sides) / particles.lengths[: particles.dimension]
     for row, axis in np.argwhere(sides > FARTHEST):

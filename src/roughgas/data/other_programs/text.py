@@ -102,7 +102,7 @@ class Rows(NamedTuple):
         table = Table(self.path, self.numbers, words, self.columns)
         if "id" not in self.columns:
             return table
-        ids = table.whole("id", 0, LARGEST_ID)
+        ids = table.integers("id", 0, LARGEST_ID)
         order = np.argsort(ids, kind="stable")
         for row in order[1:][np.diff(ids[order]) == 0]:
             table.refuse(row, "id", ids[row], "be the number of one particle")
@@ -120,14 +120,14 @@ class Table(NamedTuple):
 
     def texts(self, name: str) -> list[str]:
         """Return the words in the column `name`."""
-        place = self.columns.index(name)
-        return [row[place] for row in self.words]
+        column = self.columns.index(name)
+        return [row[column] for row in self.words]
 
     def values(self, *names: str) -> np.ndarray:
         """Return the numbers in these columns, (lines, columns); raise InputError for other words,
         and for numbers that are not finite."""
-        places = [self.columns.index(name) for name in names]
-        words = [[row[place] for place in places] for row in self.words]
+        indices = [self.columns.index(name) for name in names]
+        words = [[row[index] for index in indices] for row in self.words]
         try:
             values = np.array(words, float)
         except ValueError:
@@ -149,7 +149,7 @@ class Table(NamedTuple):
                 return values
         return None
 
-    def whole(self, name: str, low: int, high: int) -> np.ndarray:
+    def integers(self, name: str, low: int, high: int) -> np.ndarray:
         """Return the whole numbers in the column `name`; raise InputError outside [low, high]."""
         values = self.values(name)[:, 0]
         illegal = (values != np.floor(values)) | (values < low) | (values > high)
@@ -172,7 +172,7 @@ class Table(NamedTuple):
         return None
 
     def require(self, name: str) -> None:
-        """Raise InputError unless there is a column `name`, or one of several, as in "x or xs"."""
+        """Raise InputError without a column `name`; alternatives are joined, as in "x or xs"."""
         if not {*name.split(" or ")} & {*self.columns}:
             key = f"{self.path}, above line {min(self.numbers)}: columns"
             raise InputError(key, short_repr(" ".join(self.columns)), f"have {name} among them")
