@@ -167,7 +167,7 @@ def test_species_of_a_file_must_be_those_of_the_settings():
             first,
             second | {"radius": 1.4},
         ],
-        "initial.inertia of particle 8 = 0.39.*: must be 0.3, as in the settings": [
+        "initial.inertia of particle 8 = 0.4: must be 0.3, as in the settings": [
             first,
             second | {"inertia": 0.3},
         ],

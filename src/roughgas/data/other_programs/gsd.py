@@ -17,6 +17,12 @@ MAGIC = bytes.fromhex("df65df65df65df65")
 BOX, ORIGIN = "box", "origin"
 """Entries of the log of roughgas: the box in double precision, and the corner of the gas."""
 
+WIDTHS: dict[str, tuple[int, ...]] = {
+    **{"position": (3,), "velocity": (3,), "angmom": (4,), "orientation": (4,)},
+    **{"moment_inertia": (3,), "diameter": (), "mass": (), "typeid": ()},
+}
+"""Fields of particles, and the shapes of a particle's values."""
+
 
 def is_gsd(content: bytes) -> bool:
     """Return whether a file that begins with `content` is GSD."""
@@ -39,11 +45,10 @@ def read_gsd(path: str | Path, frame: int) -> FileParticles:
     if not 1 <= particles.N <= MAX_PARTICLES:
         legal = f"be a number in [1, {MAX_PARTICLES}]"
         raise InputError(f"{path}, number of particles", particles.N, legal)
-    for row in np.flatnonzero(particles.typeid >= len(particles.types)):
+    values = {name: _field(path, particles, name, width) for name, width in WIDTHS.items()}
+    for row in np.flatnonzero(values["typeid"] >= len(particles.types)):
         legal = f"be below {len(particles.types)}, the number of types"
         raise InputError(f"{path}, typeid of particle {row}", particles.typeid[row], legal)
-    names = ("position", "velocity", "angmom", "orientation", "moment_inertia", "diameter", "mass")
-    values = {name: _field(path, particles, name) for name in names}
     for name in ("diameter", "mass"):
         for row in np.flatnonzero(values[name] <= 0.0):
             raise InputError(f"{path}, {name} of particle {row}", values[name][row], "be positive")
@@ -54,7 +59,7 @@ def read_gsd(path: str | Path, frame: int) -> FileParticles:
         angular_velocity=angular_velocity,
         radius=values["diameter"] / 2.0,
         mass=values["mass"],
-        species=np.array(particles.typeid, np.int64),
+        species=values["typeid"].astype(np.int64),
         names=tuple(particles.types),
         origin=_logged(path, shot, ORIGIN, -0.5 * lengths),
         lengths=lengths,
@@ -89,9 +94,12 @@ def _logged(path: str | Path, shot: Any, name: str, default: Any) -> np.ndarray:
     return values
 
 
-def _field(path: str | Path, particles: Any, name: str) -> np.ndarray:
-    """Return a field of all particles; raise InputError for numbers that are not finite."""
-    values = np.array(getattr(particles, name), float)
+def _field(path: str | Path, particles: Any, name: str, width: tuple[int, ...]) -> np.ndarray:
+    """Return a field of all particles, (N, *width); raise InputError for another shape and for
+    numbers that are not finite."""
+    values, shape = np.array(getattr(particles, name), float), (particles.N, *width)
+    if values.shape != shape:
+        raise InputError(f"{path}, {name}", f"of shape {values.shape}", f"have the shape {shape}")
     for row in np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1)):
         value = short_repr(values[row].tolist())
         raise InputError(f"{path}, {name} of particle {row}", value, "be finite numbers")

@@ -230,7 +230,7 @@ def _section(path: str | Path, sections: dict[str, Section], name: str, count: i
     if len(section.lines) != count:
         key = f"{path}, line {section.number}: lines of {name}"
         raise InputError(key, len(section.lines), f"be {count}, the number of atoms")
-    columns = VELOCITY_COLUMNS
+    columns: tuple[str, ...] = VELOCITY_COLUMNS
     if name == "Atoms":
         if section.heading and section.heading not in STYLES:
             key = f"{path}, line {section.number}: atom_style"

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple, NoReturn, TypeVar
+from typing import NamedTuple, NoReturn, SupportsIndex, TypeVar
 
 import numpy as np
 
@@ -106,8 +106,8 @@ class Rows(NamedTuple):
         order = np.argsort(ids, kind="stable")
         for row in order[1:][np.diff(ids[order]) == 0]:
             table.refuse(row, "id", ids[row], "be the number of one particle")
-        numbers, words = ([listed[k] for k in order] for listed in (self.numbers, words))
-        return Table(self.path, numbers, words, self.columns)
+        numbers = [self.numbers[row] for row in order]
+        return Table(self.path, numbers, [words[row] for row in order], self.columns)
 
 
 class Table(NamedTuple):
@@ -177,7 +177,7 @@ class Table(NamedTuple):
             key = f"{self.path}, above line {min(self.numbers)}: columns"
             raise InputError(key, short_repr(" ".join(self.columns)), f"have {name} among them")
 
-    def refuse(self, row: int, column: str, value: object, legal: str) -> NoReturn:
+    def refuse(self, row: SupportsIndex, column: str, value: object, legal: str) -> NoReturn:
         """Raise InputError for a `value` in a row, counted from 0, and a column."""
         raise InputError(f"{self.path}, line {self.numbers[row]}, column {column}", value, legal)
 
