@@ -179,7 +179,8 @@ class Table(NamedTuple):
 
     def refuse(self, row: SupportsIndex, column: str, value: object, legal: str) -> NoReturn:
         """Raise InputError for a `value` in a row, counted from 0, and a column."""
-        raise InputError(f"{self.path}, line {self.numbers[row]}, column {column}", value, legal)
+        key = f"{self.path}, line {self.numbers[int(row)]}, column {column}"
+        raise InputError(key, value, legal)
 
 
 def _number(word: str) -> float:
