@@ -6,6 +6,7 @@ __all__ = [
     "__version__",
     "experiments",
     "open_points",
+    "read_frame",
     "register_effect",
     "register_observable",
     "simulate",
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from roughgas.library import (
         experiments,
         open_points,
+        read_frame,
         register_effect,
         register_observable,
         simulate,

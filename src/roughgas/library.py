@@ -1,8 +1,8 @@
 """roughgas in a notebook or a script: datasets of scenes given by keyword arguments.
 
 The functions of this module are available as `roughgas.simulate`, `roughgas.trajectory`,
-`roughgas.open_points`, `roughgas.experiments`, `roughgas.register_effect` and
-`roughgas.register_observable`.
+`roughgas.read_frame`, `roughgas.open_points`, `roughgas.experiments`, `roughgas.register_effect`
+and `roughgas.register_observable`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -147,9 +147,10 @@ def simulate(
     spin_temperature
         Temperature of the spins at the start, in m a^2/T^2; the velocities have temperature 1.
     initial
-        State to begin with: a point with `keep_state`, which is continued; or a frame of a
-        trajectory, or a dataset with the variables ``position``, ``velocity`` and ``spin``, read by
-        the names of their dimensions. Species are matched by name.
+        State to begin with: a point with `keep_state`, which is continued; a frame of a trajectory,
+        or of a file of another program (`read_frame`); or a dataset with the variables
+        ``position``, ``velocity`` and ``spin``, read by the names of their dimensions. Species are
+        matched by name.
     reseed
         Seed of new noise for `initial`. By default an unchanged state continues the noise of its
         run; the noise for a changed state follows from the seed and from the state.
@@ -377,6 +378,56 @@ def trajectory(
     return as_trajectory(
         trajectory_variables(scene, settings, shots), attributes | {"seed": grid_point.seed}
     )
+
+
+def read_frame(
+    path: str | Path,
+    frame: int = -1,
+    *,
+    unit_length: float | None = None,
+    unit_mass: float | None = None,
+    unit_time: float = 1.0,
+) -> "xarray.Dataset":
+    """Return a frame of a file of another program, for `initial` of `simulate` and `trajectory`.
+
+    The file is a data file of LAMMPS in atom_style sphere, a text file of its command dump, an
+    extended XYZ file, or a GSD file (which needs roughgas[trajectories]).
+
+    Parameters
+    ----------
+    path
+        Path of the file; its content tells the format.
+    frame
+        Number of the frame, from 0, or from the end if negative; by default the last.
+    unit_length
+        The radius a in units of the file; by default the radius of its first species.
+    unit_mass
+        The mass m in units of the file; by default the mass of its first species.
+    unit_time
+        The time T in units of the file.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``position``, ``velocity`` (particle, axis), ``spin`` (particle, spin_axis), ``radius`` and
+        ``mass`` (particle), and in a mixture ``species_of`` (particle), as far as the file has
+        them, in the units of the gas; ``box`` (axis) from the corner at 0. Spins are velocities of
+        the surface, radius times angular velocity. Particles that stay in a plane of constant z
+        are disks. A run that begins so checks sides of the box, radii, masses and species against
+        its settings.
+
+    Raises
+    ------
+    roughgas.base.InputError
+        For content that is illegal or cut off, a tilted box, a missing frame or column; its text is
+        one line with the file, the line and the column.
+    OSError
+        For a file that cannot be read.
+    """
+    from roughgas.data import other_programs
+
+    units = other_programs.Units(unit_length, unit_mass, unit_time)
+    return other_programs.read_frame(path, frame, units)
 
 
 def open_points(points: str | Path | Iterable[str | Path]) -> "xarray.Dataset":

@@ -153,7 +153,7 @@ def test_no_two_particles_are_closer_than_a_diameter_in_the_cell_of_the_file(nam
 
 
 COMMENT_PATTERN = re.compile(
-    r'Lattice="([^"]*)" Properties=(\S+) pbc="([^"]*)" Time=(\S+)'
+    r'Lattice="([^"]*)" Properties=(\S+) pbc="([^"]*)" Time=(\S+) source=roughgas'
 )  # extended XYZ
 
 

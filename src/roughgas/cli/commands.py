@@ -37,8 +37,21 @@ CHANGES_HELP = (
     "change settings: particles=80, schedule.measure=100, effects.friction.mu=0.3; null removes"
 )
 Changes = Annotated[Sequence[str], Option(CHANGES_HELP, "KEY=VALUE", "--set")]
-START_FROM_HELP = "continue from the last state of this dataset"
-StartFrom = Annotated[str | None, Option(START_FROM_HELP, "POINT", "--from")]
+START_FROM_HELP = (
+    "continue from the last state of this dataset, or begin as in a file of another program: "
+    "LAMMPS data or dump, extended XYZ, GSD"
+)
+StartFrom = Annotated[str | None, Option(START_FROM_HELP, "FILE", "--from")]
+FRAME_HELP = "frame of such a file, from 0, or from its end: -1, ... (default: the last)"
+FrameNumber = Annotated[str | None, Option(FRAME_HELP, "NUMBER")]
+UNIT_HELP = "{} in units of such a file (default: {})"
+UnitLength = Annotated[
+    str | None, Option(UNIT_HELP.format("a", "the radius of its first species"), "LENGTH")
+]
+UnitMass = Annotated[
+    str | None, Option(UNIT_HELP.format("m", "the mass of its first species"), "MASS")
+]
+UnitTime = Annotated[str | None, Option(UNIT_HELP.format("T", "1"), "TIME")]
 RESEED_OPTION = Option("fresh noise for the state of --from, in place of --seed", "SEED")
 StartTime = Annotated[str | None, Option("time of the first frame (default: when steady)", "TIME")]
 Duration = Annotated[str | None, Option("time shown (default: by experiment)", "TIME")]
@@ -71,6 +84,7 @@ def command(
     "roughgas run vibrated --set effects.spin.inertia=0.3 --r 0.9 --beta 1 -o hollow.nc",
     "roughgas run sheared --r 0.9 --beta 0 --keep-state -o first.nc",
     "roughgas run sheared --r 0.9 --beta 0 --from first.nc -o second.nc",
+    "roughgas run sheared --r 0.9 --beta 0 --from gas.lammpstrj --frame 20 -o gas.nc",
     "roughgas run sheared --r 0.9 --beta 0 --observe stress profiles -o stress.nc",
     writes="POINT",
 )
@@ -86,6 +100,10 @@ def run(
     seed: Seeds = None,
     changes: Changes = (),
     start_from: StartFrom = None,
+    frame: FrameNumber = None,
+    unit_length: UnitLength = None,
+    unit_mass: UnitMass = None,
+    unit_time: UnitTime = None,
     reseed: Annotated[list[str] | None, RESEED_OPTION] = None,
     keep_state: Annotated[bool, Option("keep the last state in the dataset, for --from")] = False,
     observe: Annotated[
@@ -101,11 +119,12 @@ def run(
     the point's, and its summary is printed, as by `roughgas show`. --set changes any setting of the
     experiment, by its key in config.yaml.
     """
-    from roughgas.cli.run import Selection, write_points
+    from roughgas.cli.run import Selection, Start, write_points
 
     points = experiment, scale, config, settings, r, beta, seed
     selection = Selection(*points, changes, observe, keep_state, studies)
-    write_points(selection, start_from, reseed, output, json)
+    start = Start(start_from, frame, unit_length, unit_mass, unit_time)
+    write_points(selection, start, reseed, output, json)
 
 
 @command(
@@ -173,6 +192,10 @@ def trajectory(
         list[str] | None, Option("increasing times of frames, in place of these three", "TIME")
     ] = None,
     start_from: StartFrom = None,
+    frame: FrameNumber = None,
+    unit_length: UnitLength = None,
+    unit_mass: UnitMass = None,
+    unit_time: UnitTime = None,
     reseed: Annotated[str | None, RESEED_OPTION] = None,
     double: Annotated[
         bool, Option("numbers of .gsd files in double precision (needs gsd 5 or newer)")
@@ -187,12 +210,13 @@ def trajectory(
     collisions per particle.
     """
     from roughgas.cli.excerpts import Excerpt, write_trajectory
-    from roughgas.cli.run import Selection
+    from roughgas.cli.run import Selection, Start
 
     points = experiment, scale, config, settings, r, beta, seed
     selection = Selection(*points, changes, studies=studies)
     excerpt = Excerpt(start, length, frames, times)
-    write_trajectory(selection, excerpt, start_from, reseed, double, output)
+    first = Start(start_from, frame, unit_length, unit_mass, unit_time)
+    write_trajectory(selection, excerpt, first, reseed, double, output)
 
 
 @command(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roughgas.base import InputError, Interval
 from roughgas.base.labels import GridPoint
-from roughgas.cli.run import Selection, initial_in, points_of
+from roughgas.cli.run import Selection, Start, initial_in, points_of
 from roughgas.cli.values import number, whole_number
 from roughgas.config import study_code
 from roughgas.data.trajectory import check_format, growing_trajectory
@@ -49,7 +49,7 @@ class Excerpt(NamedTuple):
 def write_trajectory(
     selection: Selection,
     excerpt: Excerpt,
-    start_from: str | None,
+    start: Start,
     reseed: str | None,
     double: bool,
     outputs: Sequence[str],
@@ -57,13 +57,13 @@ def write_trajectory(
     """Simulate a point, and write its trajectory, frame by frame, to each path in `outputs` (.xyz,
     .nc or .gsd).
 
-    The simulation continues from the last state of the dataset `start_from`, with noise of the seed
-    `reseed` if there is one. Numbers in .gsd files are in double precision if `double`. Raises
+    The simulation begins from the file of `start`, if it has one, with noise of the seed `reseed`
+    if there is one. Numbers in .gsd files are in double precision if `double`. Raises
     InputError, OSError, and CollapseError for an inelastic collapse.
     """
     for output in outputs:
         check_format(output, double)
-    initial, seed = initial_in(start_from, selection.seed, reseed)
+    initial, seed = initial_in(start, selection.seed, reseed)
     name, (coordinates,), experiment = points_of(selection, seed)
     scene = build(experiment, coordinates.r, coordinates.beta)
     take = chosen_take(excerpt, experiment, scene, initial)

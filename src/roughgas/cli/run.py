@@ -24,8 +24,10 @@ from roughgas.base.labels import (
     names_of,
     species_settings,
 )
-from roughgas.cli.values import check_outputs, labels
+from roughgas.cli.values import check_outputs, labels, number
 from roughgas.config import study_code
+from roughgas.data import other_programs
+from roughgas.data.other_programs.particles import UNIT
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import protocols
 from roughgas.simulation.checkpoint import checkpoint_path
@@ -67,32 +69,84 @@ class Selection(NamedTuple):
     studies: Sequence[str] = ()  # folders of studies whose code `settings` need
 
 
+class Start(NamedTuple):
+    """The file that a run begins from, and options of files of other programs: texts, as they are
+    written, None if omitted."""
+
+    file: str | None
+    frame: str | None = None
+    unit_length: str | None = None
+    unit_mass: str | None = None
+    unit_time: str | None = None
+
+    def options(self) -> list[str]:
+        """Return the words of a command line that repeat these options."""
+        words = [] if self.file is None else ["--from", self.file]
+        return words + [f"{name}={text}" for name, text in self._named_options().items()]
+
+    def dataset(self) -> Any:
+        """Return the dataset of the state to begin with; there is a file.
+
+        Raises InputError for a file without one, and for illegal options.
+        """
+        options = self._named_options()
+        if self.file and other_programs.is_of_other_program(self.file):
+            units = {
+                key: number(name, options[name], UNIT)
+                for key in other_programs.Units._fields
+                if (name := f"--unit-{key}") in options
+            }
+            frame = other_programs.LAST_FRAME
+            if "--frame" in options:
+                frame = _frame_number(options["--frame"])
+            return other_programs.read_frame(self.file, frame, other_programs.Units(**units))
+        if options:
+            name, text = next(iter(options.items()))
+            raise InputError(name, text, "come with a file of another program: --from FILE")
+        point = read_point(self.file or "")
+        if "last_position" not in point:
+            legal = "be a point that has kept its last state, by --keep-state"
+            raise InputError("--from", self.file, legal)
+        return point
+
+    def _named_options(self) -> dict[str, str]:
+        """Return the options beside the file that are not omitted, by name."""
+        texts = zip(self._fields[1:], self[1:], strict=True)
+        return {f"--{key.replace('_', '-')}": text for key, text in texts if text is not None}
+
+
+def _frame_number(text: str) -> int:
+    """Return the number of a frame; raise InputError for another text."""
+    if not re.fullmatch(r"-?\d{1,9}", text):
+        raise InputError("--frame", text, "be a whole number: 0, 1, ..., or -1 for the last")
+    return int(text)
+
+
 def write_points(
     selection: Selection,
-    start_from: str | None,
+    start: Start,
     reseed: list[str] | None,
     output: list[str] | None,
     json: bool,
 ) -> None:
     """Simulate points, and write the dataset of each as soon as it is finished.
 
-    The simulations continue from the last state of the dataset `start_from`, with noise of the
-    seeds `reseed`, texts, if there are any. `output` has a path for each point; if it is None,
+    The simulations begin from the file of `start`, if it has one, with noise of the seeds `reseed`,
+    texts, if there are any. `output` has a path for each point; if it is None,
     datasets go into the present folder, and their summaries are printed. With `json` the results of
     each point are printed as a line of JSON. If several points are interrupted, the same command
     reuses those already finished. Raises InputError, OSError, and CollapseError for an inelastic
     collapse.
     """
-    initial, seed = initial_in(start_from, selection.seed, reseed)
+    initial, seed = initial_in(start, selection.seed, reseed)
     name, selected, experiment = points_of(selection, seed)
     paths = output or [_default_path(name, selection, coordinates) for coordinates in selected]
     if len(paths) != len(selected):
         raise InputError("--output", " ".join(paths), f"name {len(selected)}, one per point")
     if output is None:
-        inputs = [selection.config, *([start_from] if start_from else [])]
+        inputs = [selection.config, *([start.file] if start.file else [])]
         check_outputs(paths, inputs, "POINT")
-    extra_options = study_code.options(experiment.raw)
-    extra_options += ["--from", start_from] if start_from and initial else []
+    extra_options = [*study_code.options(experiment.raw), *start.options()]
     arguments = name, experiment, selected, selection.scale, paths, initial
     checkpoints = [*map(checkpoint_path, paths)]
     finished = FinishedPoints(paths) if len(paths) > 1 else None
@@ -114,23 +168,19 @@ def write_points(
 
 
 def initial_in(
-    start_from: str | None, seed: str | list[str] | None, reseed: str | list[str] | None
+    start: Start, seed: str | list[str] | None, reseed: str | list[str] | None
 ) -> tuple[list[InitialState], Any]:
-    """Return the states saved in the dataset `start_from`, one per replica, and the seed or seeds
-    of the noise.
+    """Return the states in the file of `start`, one per replica, and the seed or seeds of the
+    noise.
 
-    There are no states without a dataset. `reseed`, texts, are seeds of fresh noise for saved
+    There are no states without a file. `reseed`, texts, are seeds of fresh noise for saved
     states, in place of `seed`; without either, the run continues the noise of the saved state.
-    Raises InputError for a dataset without a saved state, for both `seed` and `reseed`, and for
-    `reseed` without a dataset.
+    Raises InputError for a file without a state, for both `seed` and `reseed`, and for `reseed`
+    without a file.
     """
     states: list[InitialState] = []
-    if start_from is not None:
-        point = read_point(start_from)
-        if "last_position" not in point:
-            legal = "be a point that has kept its last state, by --keep-state"
-            raise InputError("--from", start_from, legal)
-        states = initial_states_of(point)
+    if start != Start(None):
+        states = initial_states_of(start.dataset())
     return with_noise_source(states, seed, reseed)
 
 

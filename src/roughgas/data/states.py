@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import xarray
 
 REPLICA = "replica"
+READ_FROM = "read_from"
+"""Attribute of a state from a file of another program: the file and the frame, for messages."""
 
 
 class Quantity(NamedTuple):
@@ -37,6 +39,7 @@ QUANTITIES = {
     "inertia": Quantity("1", ("particle",)),
     "species_of": Quantity("1", ("particle",)),
     "time": Quantity(TIME, ()),
+    "box": Quantity(LENGTH, ("axis",)),
 }
 AXES = {1: "z", 2: "xy", 3: "xyz"}
 """Coordinates along an axis, by their number: disks have a spin along z alone."""

@@ -295,7 +295,7 @@ def _xyz(path: Path, title: str) -> Iterator["Append"]:
             pbc = " ".join("F" if is_bounded else "T" for is_bounded in bounded)
             file.write(
                 f'{len(frame.position)}\nLattice="{cell}" Properties=species:S:1:{kinds} '
-                f'pbc="{pbc}" Time={frame.time!r}\n'
+                f'pbc="{pbc}" Time={frame.time!r} source=roughgas\n'
             )
             rows = np.hstack(list(columns.values())).tolist()
             for symbol, row in zip(_symbols(values), rows, strict=True):
@@ -475,6 +475,7 @@ def _shot(shot: Any, step: int, frame: FileFrame, values: Variables) -> Any:
     if frame.image is not None:
         shot.particles.image = frame.image
     shot.log["time"] = np.array([frame.time])
+    shot.log["origin"] = np.where(upward, 0.0, -0.5 * np.diag(cell)) * [1.0, 1.0, dimension == 3]
     if frame.spin is not None:
         shot.log["particles/omega"] = frame.spin
     orientation = _orientation(frame)

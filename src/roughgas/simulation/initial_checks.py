@@ -1,6 +1,7 @@
 """Checks of initial states against an experiment: particles, species, radii, and the seed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -30,12 +31,24 @@ def checked_initial_states(
 
     Raises InputError if the run cannot begin with them, or if a chosen `seed` has no effect on it.
     """
-    states = [_with_experiment_numbers(state, experiment) for state in initial]
-    check_initial_states(states, experiment, scene)
+    with _naming(initial[0].file):
+        states = [_with_experiment_numbers(state, experiment) for state in initial]
+        check_initial_states(states, experiment, scene)
     for state in states:
         if not _may_draw_spins(state, experiment):
             _check_seed(state, scene, seed)
     return states
+
+
+@contextmanager
+def _naming(file: str) -> Iterator[None]:
+    """Name the file of another program, if there is one, in the key of an InputError."""
+    try:
+        yield
+    except InputError as error:
+        if not file:
+            raise
+        raise InputError(f"{file}: {error.key}", error.value, error.legal) from error
 
 
 def _may_draw_spins(initial, experiment):
@@ -75,6 +88,7 @@ def check_initial_states(
         raise InputError("initial", "with a state twice", legal)
     for state in initial:
         _check_vectors(state, experiment.particles, scene)
+        _check_box(state, experiment)
         radius = _check_bodies(state, experiment, scene)
         if not is_memory_of(state, scene):
             check_positions(scene, state.position, state.time, radius)
@@ -94,6 +108,16 @@ def _check_vectors(initial, number, scene):
             raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
     if initial.spin is not None and scene.effects.spin is None and np.any(initial.spin):
         raise InputError("initial.spin", "not zero", "not be there where particles do not spin")
+
+
+def _check_box(initial, experiment):
+    """Raise InputError if a file of another program has a box of other sides than the settings."""
+    if initial.box is None:
+        return
+    for axis, (side, length) in enumerate(zip(initial.box, experiment.lengths, strict=True)):
+        if length is not None and not np.isclose(side, length, rtol=FLOAT32_TOLERANCE, atol=0.0):
+            legal = f"be {length:g}, as in the settings"
+            raise InputError(f"initial.box[{axis}]", f"{side:.9g}", legal)
 
 
 def _check_bodies(initial, experiment, scene):

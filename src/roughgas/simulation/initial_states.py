@@ -59,6 +59,8 @@ class InitialState(NamedTuple):
     of_settings: Mapping[str, np.ndarray] = {}  # (N,) each, to be checked: CHECKED_QUANTITIES
     seed: Any = 1  # of the run that ended in this state, as in its dataset
     noise: str = CARRIED  # or SEED, or RESEED
+    box: np.ndarray | None = None  # (D,) in a, of a file of another program, to be checked
+    file: str = ""  # of another program, and its frame
 
     def digest(self) -> str:
         """Return a checksum of all content that a run from this state depends on.

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughgas.base import InputError, short_repr
 from roughgas.data.netcdf import check_version
-from roughgas.data.states import check_type, read_memory, read_quantity
+from roughgas.data.states import READ_FROM, check_type, read_memory, read_quantity
 from roughgas.simulation.initial_states import (
     BODY_VARIABLES,
     CARRIED,
@@ -55,6 +55,9 @@ def initial_states_of(dataset: "xarray.Dataset") -> list[InitialState]:
     if np.min(times) < 0.0:
         raise InputError("initial.time", short_repr(times.tolist()), "be a number >= 0")
     _check_species(states.get("species"))
+    file = str(dataset.attrs.get(READ_FROM, ""))
+    if file and "box" in dataset:
+        states["box"] = read_quantity(dataset, "box")
     settings = {name: states.pop(name) for name in CHECKED_QUANTITIES if name in states}
     return [
         InitialState(
@@ -63,6 +66,7 @@ def initial_states_of(dataset: "xarray.Dataset") -> list[InitialState]:
             memory=memory,
             memory_owner=str(dataset.attrs.get("memory_of", "")),
             names=tuple(map(str, dataset["species"].values)) if "species" in dataset else (),
+            file=file,
             of_settings={name: values[number] for name, values in settings.items()},
             seed=dataset.attrs.get("seed", 1),
         )
