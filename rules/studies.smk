@@ -102,11 +102,12 @@ rule plot:
     log:
         "logs/figures/{folder}{plotted}.log",
     params:
-        code=code_of("show.figures.variables", "show.style"),
+        code=from_wildcards(drawings.plot_code),
+        theory=unrecorded(drawings.plot_theory),
     message:
         "draw {wildcards.folder}{wildcards.plotted}"
     shell:
-        "roughgas plot {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "roughgas plot {input.data:q} {params.theory:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule movie:

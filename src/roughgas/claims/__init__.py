@@ -20,7 +20,7 @@ from roughgas import base
 from roughgas.base import InputError, NamedValues, Record
 from roughgas.base.files import study_module, write_text
 from roughgas.claims import driven, verdicts
-from roughgas.claims.variables import deviation_of
+from roughgas.claims.variables import THEORY, deviation_of
 from roughgas.claims.verdicts import (
     FAILS,
     NOT_TESTED,
@@ -39,8 +39,6 @@ REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
 Phys. Rev. E 58, 2247 (1998)"""
 STATEMENTS = "statements"
-THEORY = "theory"
-"""Module of a study with functions of a reduced dataset, named after variables: their theory."""
 OPTIONAL_KEYS = ("ours", "conclusion", "refuted_beyond")
 """Keys of a row of claims.yaml that are fields of `Statement` with a default."""
 HEAD_KEYS = ("title", "about", "quotes", "after")

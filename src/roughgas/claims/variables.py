@@ -7,14 +7,29 @@ theory of a variable over its dimensions.
 import itertools
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from roughgas.base.files import study_module
 from roughgas.claims.verdicts import NotTestedError, Sample, sample
 from roughgas.data.reduced import STEADY_SHARE
 from roughgas.theory.prediction import species_at
+
+THEORY = "theory"
+"""Module of a study with functions of a reduced dataset, named after variables: their theory."""
+
+
+def theories_of(folder: str | Path, data: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the theory of variables of a reduced dataset by their names, from a study's theory.py.
+
+    `folder` is the study's. Raises InputError for a missing file, or one that is no Python.
+    """
+    functions = vars(study_module(folder, THEORY))
+    names = [str(name) for name in data.data_vars if callable(functions.get(str(name)))]
+    return {name: functions[name](data) for name in names}
 
 
 def theory_over_grid(

@@ -3,6 +3,7 @@ its docstring is the help. Slow imports are inside the functions."""
 
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -270,6 +271,9 @@ def plot(
     ] = None,
     r: Annotated[Sequence[str], Option("values of r to show", "VALUE")] = (),
     beta: Annotated[Sequence[str], Option("values of beta to show", "VALUE")] = (),
+    theory: Annotated[
+        str | None, Option("a study's folder, whose theory.py has lines of a sweep", "FOLDER")
+    ] = None,
     output: Annotated[list[str], Option(".png, .pdf or .svg files", "FILE")],
 ) -> None:
     """Draw a point over time, or any reduced dataset beside theory.
@@ -282,11 +286,13 @@ def plot(
     sweep --of draws any variables with error bars, a row for each: over the axis, or, of a variable
     such as a profile, along its coordinate. Without --of, R and the results of observables.
     """
+    from roughgas.claims.variables import theories_of
     from roughgas.show import gallery
 
     chosen = {"r": [number("--r", text) for text in r]}
     chosen["beta"] = [number("--beta", text) for text in beta]
-    for line in gallery.plot(input, output, over, of, **chosen):
+    lines = partial(theories_of, theory) if theory else None
+    for line in gallery.plot(input, output, over, of, lines, **chosen):
         print(line, file=sys.stderr)
 
 

@@ -7,7 +7,7 @@ a row for each study, and the statements below.
 import csv
 import json
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -60,7 +60,7 @@ def write(
     `claims` are the paths of claims.json in a folder named after the study, `data` those of all
     reduced datasets; `studies` is JSON, the paper and the folder of each study by name.
     """
-    seconds: Counter[str] = Counter()
+    seconds: dict[str, float] = defaultdict(float)
     for gas in map(read_reduced, data):
         seconds[gas.attrs["experiment"].partition(".")[0]] += float(gas.kernel_seconds.sum())
     rows: list[PaperRow] = []

@@ -95,6 +95,7 @@ def plot(
     outputs: Iterable[str | Path],
     over: str | None = None,
     of: Sequence[str] = (),
+    theory: "Callable[[xr.Dataset], Mapping[str, xr.DataArray]] | None" = None,
     **chosen: Sequence[float],
 ) -> list[str]:
     """Draw a reduced dataset, the time series of a point, or a variable of an observable of a
@@ -102,16 +103,18 @@ def plot(
 
     `path` is the path of the dataset, and `of` names variables to draw, of a point one; by default
     R, and in a reduced dataset all that observables have measured. For a reduced one `over` is the
-    horizontal axis, and `chosen` has the values of r and beta to show, as in `sweep.draw`. Returns
-    messages on what is not shown. Raises InputError as `sweep.draw`, for another type of file,
-    and for an axis or values chosen for a point.
+    horizontal axis, `chosen` has the values of r and beta to show, as in `sweep.draw`, and `theory`
+    returns lines of theory of a dataset, by variable. Returns messages on what is not shown.
+    Raises InputError as `sweep.draw`, for another type of file, and for an axis, values or a theory
+    chosen for a point.
     """
     from roughgas.show.figures import sweep, variables
 
     with opened(path, REDUCED, POINT) as file:
         is_point = file_type_of(file) == POINT
-    if is_point and any((over, *chosen.values())):
-        raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
+    if is_point and any((over, theory, *chosen.values())):
+        legal = "be a reduced one for --over, --r, --beta and --theory"
+        raise InputError("dataset", path, legal)
     if is_point:
         point = read_point(path)
         if len(of) > 1:
@@ -122,11 +125,12 @@ def plot(
             style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
         return []
     data = read_reduced(path)
-    names = [*of] or variables.drawn_by_default(data)
-    if names == ["R" if "R" in data else "E_trans"]:
+    lines_of_theory = theory(data) if theory else {}
+    names = [*of] or variables.drawn_by_default(data, lines_of_theory)
+    if names == ["R" if "R" in data else "E_trans"] and not lines_of_theory:
         lines = sweep.coordinates_not_shown(data, over, chosen)
         style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
     else:
-        style.draw(lambda: variables.draw(data, names, over, **chosen), outputs)
+        style.draw(lambda: variables.draw(data, names, over, lines_of_theory, **chosen), outputs)
         lines = variables.not_shown(data, names, over, chosen)
     return lines

@@ -142,6 +142,21 @@ class Figures:
             raise unknown_with_suggestions("figure", plotted, "a figure or an experiment", names)
         return self.sweeps.reduced(scale_of(folder), [plotted])
 
+    def plot_theory(self, plotted: str) -> list[str]:
+        """Return the option of the command that draws the experiment `plotted`: its study's theory.
+
+        [] for an experiment of the root, or of a study without theory.py.
+        """
+        study = self.studies.named.get(plotted.partition(".")[0])
+        return [f"--theory={study.folder}"] if study and study.has("theory.py") else []
+
+    def plot_code(self, plotted: str) -> str:
+        """Return the fingerprint of the code that draws the experiment `plotted`."""
+        modules = "show.figures.variables", "show.style"
+        if not self.plot_theory(plotted):
+            return code_of(*modules)
+        return code_beside(self.studies.folder(plotted.partition(".")[0]), ["*.py"], *modules)
+
     # ---------------------------------------------------------------- in motion
 
     def movie_settings(self, folder: str, movie: str) -> str:

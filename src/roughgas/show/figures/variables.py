@@ -9,6 +9,7 @@ line for each value of the axis. Other dimensions, such as species, make further
 
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -23,20 +24,27 @@ from roughgas.show.figures import panel, sweep
 from roughgas.show.style import LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
 from roughgas.theory.prediction import equation_of
 
+THEORY = "_theory"
+"""End of the names of variables that hold theory beside a variable."""
 MAX_ROWS, MAX_LINES = 5, 10
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
 LETTERS_PER_INCH = 11.5  # of the title
 
 
-def drawn_by_default(data: xr.Dataset) -> list[str]:
+Theories = Mapping[str, xr.DataArray]
+"""Theory of variables, by their names: see roughgas.claims.variables."""
+
+
+def drawn_by_default(data: xr.Dataset, theories: Theories = MappingProxyType({})) -> list[str]:
     """Return the variables of a figure of a reduced dataset for which none are named.
 
-    They are R, or else E_trans, and the results of observables: first those that are drawn over the
-    sweep.
+    They are those with `theories`, then R, or else E_trans, and the results of observables: first
+    those that are drawn over the sweep.
     """
     observed = observed_names(data)
     observed.sort(key=lambda name: _coordinate(data, name) is not None)
-    return ["R" if "R" in data else "E_trans", *observed][:MAX_ROWS]
+    names = [*theories, "R" if "R" in data else "E_trans", *observed]
+    return [*dict.fromkeys(names)][:MAX_ROWS]
 
 
 def not_shown(
@@ -61,16 +69,22 @@ def not_shown(
 
 
 def draw(
-    data: xr.Dataset, names: Sequence[str], over: str | None = None, **chosen: Sequence[float]
+    data: xr.Dataset,
+    names: Sequence[str],
+    over: str | None = None,
+    theories: Theories = MappingProxyType({}),
+    **chosen: Sequence[float],
 ) -> Figure:
     """Draw the variables `names` of a reduced dataset, a row for each, and return the figure.
 
-    Raises InputError for names, axes and values that the data lack.
+    `theories` are lines beside variables. Raises InputError for names, axes and values that the
+    data lack.
     """
     for name in names:
         check_swept(data, name)
     layout = sweep.layout_of(data, over, chosen)
     values = sweep.chosen_values(data, layout.over, chosen.get(layout.over))
+    data = data.assign({name + THEORY: line for name, line in theories.items()})
     data = data.sel({layout.over: values})
     numeric, axis = sweep.with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
@@ -94,7 +108,7 @@ def draw(
         legend.set_in_layout(False)  # beside the last column, whose width it leaves alone
     for axes, selection in zip(grid[0], selections, strict=True):
         panel.add_title(axes, [data], sweep.title_of_panel(data, selection))
-    message = wrap(_message(data, names, layout.over), int(width * LETTERS_PER_INCH))
+    message = wrap(_message(data, names, layout.over, theories), int(width * LETTERS_PER_INCH))
     figure.suptitle("\n".join(message), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     figure.align_ylabels()
     if not all(panel.trusted(data, name).all() for name in names):
@@ -127,7 +141,10 @@ def _draw_over(
     for value, style in zip(layout.values[layout.series], LINE_STYLES, strict=False):
         label = sweep.label_of(layout.series, value)
         row = data.sel({layout.series: value, **selection})
-        if name in panel.averages_of(data):
+        if name + THEORY in data:
+            for line, *_ in _lines(row, name + THEORY, layout.over):
+                axes.plot(row[layout.over].values, line, color=style.colour, lw=0.9, zorder=1)
+        elif name in panel.averages_of(data):
             curve = panel.series(data, label, style, **{layout.series: value}, **selection)
             panel.draw_theory(panel.Panel(axes, (), axis), [curve])
         for line, error, trusted, text, inner in _lines(row, name, layout.over):
@@ -173,6 +190,9 @@ def _draw_along(
             options: Style = {"color": style.colour, "linestyle": inner.line if text else "-"}
             axes.plot(x, line, label=text, **options)
             sweep.draw_errors(axes, x, line, error, trusted, style.colour)
+        if name + THEORY in data:
+            for line, *_ in _lines(row, name + THEORY, coordinate):
+                axes.plot(x, line, color=style.colour, lw=1.6, ls=":", zorder=1)
     label = coordinate.replace("_", " ")
     axes.set_xlabel(f"{label}{sweep.unit_suffix(data[coordinate])}")
 
@@ -193,12 +213,18 @@ def _lines(
         yield values.values[index], errors[index], trusted[index], label, style
 
 
-def _message(data: xr.Dataset, names: Sequence[str], over: str) -> str:
-    """Return the title of a figure, which names the variables, the axis, and the theory of R."""
+def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theories) -> str:
+    """Return the title of a figure, which names the variables, the axis, and the theory.
+
+    Variables with `theories` of a study stand beside these, R without one beside the package's.
+    """
     *first, last = (name.replace("_", " ") for name in names)
     text = f"{', '.join(first)} and {last}" if first else last
-    theory = f", R beside {equation_of(data.attrs).name}" if "R" in names else ""
-    return f"{text} over {sweep.name_of_axis(over)}{theory}"
+    known = [name.replace("_", " ") for name in names if name in theories]
+    beside = [f"{' and '.join(known)} beside theory"] if known else []
+    if "R" in names and "R" not in theories:
+        beside.append(f"R beside {equation_of(data.attrs).name}")
+    return ", ".join([f"{text} over {sweep.name_of_axis(over)}", *beside])
 
 
 def _middle(values: Sequence[Any]) -> Any:
