@@ -91,7 +91,7 @@ def write_points(
     if output is None:
         inputs = [selection.config, *([start_from] if start_from else [])]
         check_outputs(paths, inputs, "POINT")
-    extra_options = study_code.options(experiment.raw)
+    extra_options = study_code.options(experiment.effects, experiment.observables)
     extra_options += ["--from", start_from] if start_from and initial else []
     arguments = name, experiment, selected, selection.scale, paths, initial
     checkpoints = [*map(checkpoint_path, paths)]

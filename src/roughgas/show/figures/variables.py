@@ -25,7 +25,7 @@ from roughgas.theory.prediction import equation_of
 
 MAX_ROWS, MAX_LINES = 5, 10
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
-LETTERS_PER_INCH = 11.5  # of the title
+LETTERS_PER_INCH = 13  # of the title
 
 
 def drawn_by_default(data: xr.Dataset) -> list[str]:
