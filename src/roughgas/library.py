@@ -257,7 +257,7 @@ def simulate(
         named = {key: chosen for key, chosen in observables.items() if not callable(chosen)}
         changes["observables"] = {key: dict(chosen or {}) for key, chosen in named.items()}
     name, scale, settings = experiment_of(experiment, changes, scale, config)
-    command_options = study_code.options(settings.raw)
+    command_options = study_code.options(settings.effects, settings.observables)
     command_options += ["--from", "start.nc"] if states else []
     outputs = ["point.nc"] * len(points_of_grid)
     results = simulate_points(
@@ -367,7 +367,7 @@ def trajectory(
     name, scale, settings = experiment_of(experiment, changes, scale, config)
     scene = build(settings, grid_point.r, grid_point.beta)
     take = chosen_frames(settings, scene, start, length, frames, times, states)
-    command_options = study_code.options(settings.raw)
+    command_options = study_code.options(settings.effects, settings.observables)
     command_options += (["--from", "start.nc"] if states else []) + take.options()
     noise = states[0].noise if states else SEED
     attributes = provenance(

@@ -46,15 +46,13 @@ def test_variables_are_printed_as_json(sweep, capsys):
 
 
 def test_an_unknown_variable_is_refused(sweep, tmp_path):
-    line = (
-        "roughgas: error: --of = fest: must be one of R, fast, squares, profile; did you mean fast"
-    )
+    line = "roughgas: error: --of = fest: must be one of R, fast, squares, profile\n"
     for command in (
         ["show", sweep, "--of", "fest"],
         ["plot", sweep, "--of", "fest", "-o", "x.png"],
     ):
         status, errors = outcome(command)
-        assert status == 2 and errors.startswith(line)
+        assert status == 2 and errors == line
 
 
 def test_variables_of_other_datasets_are_refused(product):

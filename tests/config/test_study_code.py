@@ -220,7 +220,8 @@ def test_a_complete_configuration_has_them():
     for name in ("mine.metal", "mine.observed"):
         raw = complete.experiment(name, "paper").raw
         assert raw == configuration.experiment(name, "paper").raw
-        assert study_code.options(raw) == ["--studies", "studies/mine"]
+        names = raw["effects"], raw.get("observables", ())
+        assert study_code.options(*names) == ["--studies", "studies/mine"]
 
 
 def test_a_parameter_that_datasets_need_is_not_swept():

@@ -67,7 +67,7 @@ def write_trajectory(
     name, (coordinates,), experiment = points_of(selection, seed)
     scene = build(experiment, coordinates.r, coordinates.beta)
     take = chosen_take(excerpt, experiment, scene, initial)
-    extra_options = study_code.options(experiment.raw)
+    extra_options = study_code.options(experiment.effects, experiment.observables)
     attributes = provenance(
         name,
         experiment,

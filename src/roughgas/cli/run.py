@@ -146,7 +146,8 @@ def write_points(
     if output is None:
         inputs = [selection.config, *([start.file] if start.file else [])]
         check_outputs(paths, inputs, "POINT")
-    extra_options = [*study_code.options(experiment.raw), *start.options()]
+    extra_options = study_code.options(experiment.effects, experiment.observables)
+    extra_options += start.options()
     arguments = name, experiment, selected, selection.scale, paths, initial
     checkpoints = [*map(checkpoint_path, paths)]
     finished = FinishedPoints(paths) if len(paths) > 1 else None

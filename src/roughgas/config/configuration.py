@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from roughgas.base import InputError, check_one_of, merged, short_repr, sorted_json
+from roughgas.base import InputError, Record, check_one_of, merged, short_repr, sorted_json
 from roughgas.base.fields import OwnSettings, RawSettings
 from roughgas.base.reading import read_yaml
 from roughgas.config import study_code
@@ -161,7 +161,7 @@ class Configuration:
         return self
 
 
-def studies_of(name: str, experiments: Mapping[str, RawSettings]) -> list[str]:
+def studies_of(name: str, experiments: Record) -> list[str]:
     """Return the studies of an experiment `name` and of the experiments that it extends.
 
     `experiments` has experiments by name, as written, unchecked; none need be there.
@@ -170,7 +170,7 @@ def studies_of(name: str, experiments: Mapping[str, RawSettings]) -> list[str]:
     parent: Any = name
     while isinstance(parent, str) and parent not in chain:
         chain.append(parent)
-        settings: Any = experiments.get(parent)
+        settings = experiments.get(parent)
         parent = settings.get("extends") if isinstance(settings, Mapping) else None
     return list(dict.fromkeys(name.partition(".")[0] for name in chain if "." in name))
 

@@ -14,7 +14,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roughgas.base import InputError, as_input_errors
-from roughgas.base.fields import RawSettings
 from roughgas.base.files import (
     forget_study,
     is_imported,
@@ -67,22 +66,20 @@ def use(folders: Iterable[str | Path]) -> None:
         raise
 
 
-def used_files(raw: RawSettings) -> list[tuple[Path, str]]:
-    """Return the folder and the name of each file in use whose names settings have.
-
-    `raw` are the merged settings of an experiment, or of its points.
-    """
+def used_files(effects: Iterable[str], observables: Iterable[str]) -> list[tuple[Path, str]]:
+    """Return the folder and the name of each file in use that defines some of these names."""
+    names = {EFFECTS: {*effects}, OBSERVABLES: {*observables}}
     return [
         (folder, file)
         for folder, code in _in_use.items()
-        for file in (EFFECTS, OBSERVABLES)
-        if (raw.get(file) or {}).keys() & getattr(code, file).keys()
+        for file in names
+        if names[file] & getattr(code, file).keys()
     ]
 
 
-def options(raw: RawSettings) -> list[str]:
-    """Return the options of `roughgas run` that make the names in the settings `raw` legal."""
-    return options_of(folder for folder, _ in used_files(raw))
+def options(effects: Iterable[str], observables: Iterable[str]) -> list[str]:
+    """Return the options of `roughgas run` that make these names legal beside --settings."""
+    return options_of(folder for folder, _ in used_files(effects, observables))
 
 
 def options_of(folders: Iterable[str | Path]) -> list[str]:

@@ -338,7 +338,8 @@ def task_settings(
     experiments: dict[str, RawSettings] = {}
     for task_name, full_name in full_names.items():
         raw = configuration.experiment(full_name, scale).for_points().raw
-        if tasks.experiments is not None or not study_code.used_files(raw):
+        names = raw.get("effects") or (), raw.get("observables") or ()
+        if tasks.experiments is not None or not study_code.used_files(*names):
             experiments[task_name] = raw
     return TaskSettings(settings, experiments)
 

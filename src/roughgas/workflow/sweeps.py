@@ -135,15 +135,20 @@ class Sweeps:
 
     def _codes_of_studies(self, scale: str, experiment: str) -> list[str]:
         """Return the fingerprint of each file of a study whose effects or observables it has."""
-        raw = self.written(scale, experiment).raw
-        self.configuration.use_names(experiment)
-        return [code_in(folder, file) for folder, file in study_code.used_files(raw)]
+        return [
+            code_in(folder, file)
+            for folder, file in study_code.used_files(*self._names_in_use(scale, experiment))
+        ]
 
     def _study_options(self, scale: str, experiment: str) -> list[str]:
         """Return the options of jobs for the effects and observables of studies; [] without any."""
+        return study_code.options(*self._names_in_use(scale, experiment))
+
+    def _names_in_use(self, scale: str, experiment: str) -> tuple[list[str], list[str]]:
+        """Return the names of the effects and of the observables of an experiment, made legal."""
         raw = self.written(scale, experiment).raw
         self.configuration.use_names(experiment)
-        return study_code.options(raw)
+        return [*raw["effects"]], [*(raw.get("observables") or ())]
 
     @staticmethod
     def kernel_code() -> str:

@@ -28,7 +28,7 @@ THEORY = "_theory"
 """End of the names of variables that hold theory beside a variable."""
 MAX_ROWS, MAX_LINES = 5, 10
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
-LETTERS_PER_INCH = 11.5  # of the title
+LETTERS_PER_INCH = 13  # of the title
 
 
 Theories = Mapping[str, xr.DataArray]
