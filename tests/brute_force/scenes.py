@@ -19,6 +19,7 @@ from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 NOISE = "temperature", "power"
 VANISHING_CONTACT_TIME = 1e-300
 UNLIMITED = 2**60
+PLAIN = record.py_func
 
 _SUMS = {"contact_averages": {}}
 _ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}, "contact_pairs": {}}
@@ -207,12 +208,16 @@ def begin(experiment, r, beta, seed=0):
     return scene, initial_state(scene, experiment, np.random.default_rng(seed))
 
 
-def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0):
-    """Advance the kernel and return the sampled columns by name. Fails if the gas collapses."""
+def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0, kernel=record):
+    """Advance the kernel and return the sampled columns by name. Fails if the gas collapses.
+
+    With the kernel `PLAIN`, plain Python, nothing is compiled: for a few events only.
+    """
     names = _columns(scene)
     rows = np.empty((samples, len(names)))
     sampling = Sampling(float(interval), collisions, refresh)
-    ended = record(state, scene, sampling, rows, allocate_frames(state, 0))
+    with np.errstate(all="ignore"):  # infinite times, in plain Python
+        ended = kernel(state, scene, sampling, rows, allocate_frames(state, 0))
     assert ended == (REACHED, samples)
     return dict(zip(names, rows.T, strict=True))
 

@@ -83,7 +83,8 @@ def energies(
         mean_spin = sum(columns[name] ** 2 for name in component_names(columns, "w")) / (
             spins or particles
         )
-        spin_squared = np.maximum(spin_squared - mean_spin, 0.0)  # rounding errors if all are equal
+        spin_squared = spin_squared - mean_spin
+        spin_squared = np.maximum(spin_squared, 0.0)  # a rounding error where all spins are equal
     translational = speed_squared / (2 * particles * len(components))
     if spin_squared is None or inertia is None:
         return Energies(translational)
