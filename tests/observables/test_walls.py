@@ -62,14 +62,13 @@ def gas_with_walls(kernel, particles, box, schedule, r, beta, observe="wall_forc
     )
 
 
-def adsorbed_density(particles, length, density=0.0):
+def adsorbed_density(particles, length):
     """Density (1/a^2) far from the walls of a square box with disks of the diameter s = 2 a.
 
-    The density n is higher by n times the area that the wall cuts from the circle of radius s about
-    a particle, on a width s along each wall: by (2/3) n^2 s^3 per length of the wall. To first
-    order in n, by iteration.
+    Near a wall the density n is higher, by n times the area that the wall cuts from the circle of
+    radius s around a particle: on all distances together by (2/3) n^2 s^3 per length of the wall.
     """
-    inner = length - 2.0
+    inner, density = length - 2.0, 0.0
     for _ in range(50):
         density = (particles - density**2 * 16.0 / 3.0 * 4.0 * inner) / inner**2
     return density
@@ -78,8 +77,8 @@ def adsorbed_density(particles, length, density=0.0):
 def test_an_elastic_gas_in_equilibrium_presses_equally_on_all_walls():
     """p = n T Z on a thermal wall and on three smooth elastic ones, within 4 sigma and 0.5 %.
 
-    Centres reach a length of L - 2 a, with more of them near both ends, by (1/3) n^2 s^3 to first
-    order (see `adsorbed_density`).
+    Centres reach a length of L - 2 a, with (1/3) n^2 s^3 more of them at either end, for the reason
+    in `adsorbed_density`. N particles have N - 1 partners, so that Z - 1 is smaller by 1/N.
     """
     particles, length, T = 40, 40, 4.0
     gas = gas_with_walls(
@@ -92,8 +91,10 @@ def test_an_elastic_gas_in_equilibrium_presses_equally_on_all_walls():
         lid={"amplitude": 1e-300, "roughness": -1.0},
     )
     density = adsorbed_density(particles, length)
-    Z = theory.compressibility(theory.mixture([{"fraction": 1}], 1.0, -1.0, 2), math.pi * density)
-    expected = T * (density * Z * (length - 2.0) + 2.0 * density**2 * 8.0 / 3.0) / length
+    disks = theory.mixture([{"fraction": 1}], 1.0, -1.0, 2)
+    excess = theory.compressibility(disks, math.pi * density) - 1.0
+    contact_density = density * (1.0 + excess * (1.0 - 1.0 / particles))
+    expected = T * (contact_density * (length - 2.0) + 2.0 * density**2 * 8.0 / 3.0) / length
     pressure, error = gas.wall_pressure, gas.wall_pressure_stderr
     assert gas.wall.values.tolist() == ["left_wall", "right_wall", "bottom_wall", "lid"]
     assert np.all(error < 0.015 * expected)
