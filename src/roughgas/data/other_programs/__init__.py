@@ -49,9 +49,11 @@ def _reader(path: str | Path) -> Reader | None:
         return None
     with open(path, "rb") as file:
         content = file.read(RECOGNISED_BYTES)
-    text = content.decode("utf-8", "replace").replace("\r\n", "\n")
     if gsd.is_gsd(content):
         return gsd.read_gsd
+    if b"\0" in content:
+        return None
+    text = content.decode("utf-8", "replace").replace("\r\n", "\n")
     if lammps.is_dump(text):
         return lammps.read_dump
     if extended_xyz.is_extended_xyz(text):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 UNIT = Interval("(0, inf)")
 LARGEST_SPECIES = 1000
 FARTHEST = 1e6  # of particles from the box, in its sides
+FASTEST = 1e9  # of particles and of their surfaces, in a/T
 
 
 class Units(NamedTuple):
@@ -80,6 +81,8 @@ def in_gas_units(particles: FileParticles, units: Units, frame: str) -> "xarray.
         values["spin"] = surface_velocity[:, slice(2, 3) if axes == 2 else slice(3)] * (
             time / length
         )
+    for name in ("velocity", "spin"):
+        _check_speed(name, values.get(name, np.empty((0, axes))), frame)
     if particles.mass is not None:
         mass = _unit("mass", units.mass, particles.mass, particles.species, frame)
         values["mass"] = particles.mass / mass
@@ -107,6 +110,13 @@ def _check_distance(particles: FileParticles, frame: str) -> None:
         key = f"{frame}: {AXES[3][axis]} of particle {row}"
         legal = f"lie within {FARTHEST:g} sides of the box"
         raise InputError(key, particles.position[row, axis], legal)
+
+
+def _check_speed(name: str, values: np.ndarray, frame: str) -> None:
+    """Raise InputError for velocities (N, axes) in a/T so fast that the units must be others."""
+    for row, axis in np.argwhere(np.abs(values) > FASTEST):
+        legal = f"be at most {FASTEST:g} a/T: state unit_time and unit_length"
+        raise InputError(f"{frame}: {name} of particle {row}", values[row, axis], legal)
 
 
 def _unit(
