@@ -90,9 +90,11 @@ def collide(state, scene, i, j, time):
     pair = pair_of(bodies, effects.spin, i, j)
     material = material_of(bodies, scene, i, j)
     material = _effective_material(effects, material, state, i, j, time, dot(v, n))
-    gain = hooks.speed_gain(effects)
-    driven_v = _with_speed_gain(gain, v, n, material[0])
-    impulse, spin_change = impulse_and_spin_change(effects, material, n, driven_v, w, 0.5, pair)
+    approach = v
+    for hook in active(effects, "speed_gain"):
+        gain = hook.function(effects[hook.effect_index], hook.account)
+        approach = _with_speed_gain(v, n, gain, material[0])
+    impulse, spin_change = impulse_and_spin_change(effects, material, n, approach, w, 0.5, pair)
     min_departure = STICKING * state.clock[TYPICAL_SPEED]
     impulse = _with_minimum_departure(impulse, n, v, 0.5 * pair.mass, min_departure)
     state.counts[SLOW_CONTACTS] += -dot(v, n) < min_departure
@@ -100,7 +102,11 @@ def collide(state, scene, i, j, time):
     # in the frame of the pair, where no large terms cancel
     ledger_row = state.ledger[0, state.ledger.shape[1] - 1]
     ledger_row[0] += dot(impulse, impulse) / pair.mass - dot(v, impulse)
-    _book_speed_gain(gain, effects, state.ledger, pair.mass, material[0] * dot(v, n))
+    for hook in active(effects, "speed_gain"):
+        gain = hook.function(effects[hook.effect_index], hook.account)
+        energy = _energy_of_speed_gain(gain, pair.mass, material[0] * dot(v, n))
+        state.ledger[0, hook.account, 0] += energy
+        ledger_row[0] -= energy
     velocity_loss_i, velocity_gain_j = (
         divide(impulse, mass_of(bodies, i)),
         divide(impulse, mass_of(bodies, j)),
@@ -205,26 +211,23 @@ def impulse_and_spin_change(effects, material, n, v, w, share, pair):
 
 
 @jit
-def _with_speed_gain(gain, v, n, r):
+def _with_speed_gain(v, n, gain, r):
     """Return the relative velocity with which restitution alone would have the same impulse.
 
     v is the relative velocity before the contact, n its normal, r its restitution, and `gain` the
-    speed that it adds to the normal speed of parting, None without such an effect.
+    speed that it adds to the normal speed of parting.
     """
-    return v if gain is None else add_scaled(v, n, -gain / (1.0 + r))
+    return add_scaled(v, n, -gain / (1.0 + r))
 
 
 @jit
-def _book_speed_gain(gain, effects, ledger, mass, reflected):
-    """Enter the energy due to the speed gain of a contact in its effect's account of the ledger.
+def _energy_of_speed_gain(gain, mass, reflected):
+    """Return the energy that a pair gains as it parts at the normal speed `gain` - `reflected`.
 
-    So far it is in the contacts' account. The normal speed of parting is `gain` - `reflected`, with
-    `reflected` = r g_n; `gain` is None without such an effect. `mass` is twice the reduced mass.
+    Without the gain it would part at -`reflected`, which is -r g_n; `mass` is twice the reduced
+    mass.
     """
-    for hook in active(effects, "speed_gain"):
-        energy = 0.25 * mass * gain * (gain - 2.0 * reflected)
-        ledger[0, hook.account, 0] += energy
-        ledger[0, ledger.shape[1] - 1, 0] -= energy
+    return 0.25 * mass * gain * (gain - 2.0 * reflected)
 
 
 @jit

@@ -157,15 +157,6 @@ def acceleration(effects):
 
 
 @jit
-def speed_gain(effects):
-    """Return the speed that contacts of pairs add to the normal speed of parting; None without."""
-    gain = None
-    for hook in active(effects, "speed_gain"):
-        gain = hook.function(effects[hook.effect_index], hook.account)
-    return gain
-
-
-@jit
 def image_shift(effects, state):
     """Return (offset, velocity) of the image above, along the first axis, at the clock's base.
 

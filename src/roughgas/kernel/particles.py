@@ -333,23 +333,24 @@ def enter_box(state, scene, i, time):
         hooks.observe_flight(scene.effects, state, i, crossings, elapsed)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
-    work = _with_lift(work, hooks.acceleration(scene.effects), scene.box, landing, position)
+    if active(scene.effects, "acceleration"):
+        work += _lift(hooks.acceleration(scene.effects), scene.box, landing, position)
     hooks.transfer(scene.effects, state, mass_of(state.bodies, i) * work)
     return position, velocity
 
 
 @jit
-def _with_lift(work, gravity, box, landing, position):
-    """Return the `work`, over the mass, plus the potential energy of an image in the box.
+def _lift(gravity, box, landing, position):
+    """Return the potential energy, over the mass, that a particle gains where it enters the box.
 
-    `landing` is the particle's position and `position` the image's; along periodic axes with
-    gravity they differ in height.
+    `landing` is its position and `position` its image's: they differ in height along periodic axes
+    along which `gravity`, an acceleration as in `free_flight`, acts.
     """
-    if gravity is not None:
-        for k in range(len(box)):
-            if gravity[k] is not None and box[k] is not None:
-                work += gravity[k] * (landing[k] - position[k])
-    return work
+    energy = 0.0
+    for k in range(len(box)):
+        if gravity[k] is not None and box[k] is not None:
+            energy += gravity[k] * (landing[k] - position[k])
+    return energy
 
 
 @jit
