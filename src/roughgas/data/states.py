@@ -53,7 +53,8 @@ def check_type(dataset: Any) -> None:
 
     if not isinstance(dataset, xarray.Dataset):
         kind = f"of type {type(dataset).__name__}"
-        raise InputError("initial", kind, "be an xarray.Dataset, as read_point(FILE) returns it")
+        legal = "be an xarray.Dataset, as read_point(FILE) or read_frame(FILE) returns it"
+        raise InputError("initial", kind, legal)
 
 
 def read_quantity(dataset: "xarray.Dataset", name: str, prefix: str = "") -> np.ndarray:
