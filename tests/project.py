@@ -83,6 +83,18 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
         for kind in ("many", "dense")
     },
     "transport.heated": {},
+    **{key: {} for key in ("luding_1998.disks", "luding_1998.spheres", "brilliantov_2007.spheres")},
+    **{
+        key: {}
+        for key in ("bodrova_2012.spheres", "vega_reyes_2015.spheres", "santos_2010.mixture")
+    },
+    **{key: {} for key in ("torrente_2019.hot", "torrente_2019.cold", "brito_2013.rough")},
+    **{f"vijayakumar_2007.{walls}_walls": {} for walls in ("smooth", "rough")},
+    "vega_reyes_2017.intruders": {"species.intruders.mass": ["1"]},
+    "herbst_2005.disks": {"friction.mu": ["0.5"]},
+    "scholz_2017.spinners": {"langevin.spin_drag": ["1"]},
+    "brito_2013.smooth": {"beta": ["-1"]},
+    "gomez_gonzalez_2020.suspension": {"shear.velocity": ["1.2"]},
     "patterns.layers": {"seeds": 1},  # of seven cases
     "transport.strained": {"shear.velocity": ["0.4"]},
 }

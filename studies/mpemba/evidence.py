@@ -31,15 +31,13 @@ def rows(*gases: xr.Dataset) -> Iterator[Row]:
         crossings = two.simulated_crossing(), two.crossing(two.published)
         ours, theirs = map(time_of, crossings)
         yield Row(quantity, at, "simulation", SOURCE, RAW, theirs, ours, "", REASON_CROSSING)
-        ours, theirs = map(depth_of, crossings)
-        quantity_of_depth = f"largest difference, in T_st, of {COMPARED[two.protocol]} that cross"
-        yield Row(
-            quantity_of_depth, at, "simulation", SOURCE, RAW, theirs, ours, "", REASON_CROSSING
-        )
-        if two.is_overshoot:
-            yield _lowest_row(two, at)
         theory = Estimate(two.crossing(two.expected()).time, 0.0)
         yield Row(quantity, at, "theory", SOURCE, RATES, theory, ours)
+        quantity = f"largest difference, in T_st, of {COMPARED[two.protocol]} that cross"
+        ours, theirs = map(depth_of, crossings)
+        yield Row(quantity, at, "simulation", SOURCE, RAW, theirs, ours, "", REASON_CROSSING)
+        if two.is_overshoot:
+            yield _lowest_row(two, at)
         for sample in two.published:
             yield from _quarter_rows(two, sample, at)
     _, T = hump(memory, MEMORY_STAGE)

@@ -17,6 +17,13 @@ scales:
     steep: {sweep: {seeds: 1}}
 """
 JOBS_OF_STUDY = {"figure": 1, "table": 1, "claims": 1, "study_page": 1}
+SMALL_COPY = {
+    "mine.spheres": {
+        "particles": 40,
+        "sweep": {"beta": ["0", "0.5"], "seeds": 2},
+        "schedule": {"replicas": 3, "plateau": 20, "relaxation_times": 2},
+    }
+}
 TINY = ("--config", "scale=tiny", "--")
 
 
@@ -40,6 +47,28 @@ def test_a_copied_study_is_planned_as_another(study_project):
     planned = study_project.planned("mine")
     assert {rule: planned[rule] for rule in JOBS_OF_STUDY} == JOBS_OF_STUDY
     assert planned["reduce"] == 2 and planned["mine"] == 1
+
+
+@pytest.mark.slow  # compiles a kernel
+def test_a_thirteenth_paper_is_added_by_copying_a_folder(study_project):
+    """It has its figure, verdicts that are not judged yet, and a row in the table of papers."""
+    studies = study_project.folder / "studies"
+    others = [path.parent for path in studies.glob("*/config.yaml") if "paper:" in path.read_text()]
+    shutil.copytree(studies / "brilliantov_2007", studies / "mine")
+    for folder in others:  # all papers take minutes
+        shutil.rmtree(folder)
+    text = (studies / "mine" / "config.yaml").read_text()
+    (studies / "mine" / "config.yaml").write_text(
+        text.replace("paper: N. V.", "paper: Mine, N. V.")
+    )
+    study_project.configure(lambda config: config["scales"]["tiny"].update(SMALL_COPY))
+    study_project.succeed("-j2", *TINY, "papers")
+    table = (study_project.folder / "results/tiny/papers.csv").read_text().splitlines()
+    assert len(others) == 12 and len(table) == 3
+    assert all(row.startswith('mine,"Mine, N. V. Brilliantov') for row in table[1:])
+    verdicts = (study_project.folder / "results/tiny/mine/claims.md").read_text()
+    assert "**Not fixed before these data.**" in verdicts
+    assert (study_project.folder / "figures/tiny/mine.spheres.png").stat().st_size > 10_000
 
 
 @pytest.mark.slow
