@@ -2,7 +2,7 @@
 
     python -m benchmarks.observed [--seeds 80] [--jobs 2] [--scenes sheared bed]
 
-Runs four gases for WINDOWS e-folds of the slowest mode of their two temperatures, with all
+Runs five gases for WINDOWS e-folds of the slowest mode of their two temperatures, with all
 applicable observables. An element misses if its interval, by Student's t, does not contain the mean
 over all runs of the longest window. The window of an observable is the first of CRITERIA from where
 on at most a share MAX_MISSES of its trusted elements miss in each scene; trust by window length is
@@ -47,6 +47,7 @@ RESTING_OBSERVABLES = CLOSED_OBSERVABLES | {"heat_flux": {}, "flux_autocorrelati
 BED_OBSERVABLES = OPEN_OBSERVABLES | {
     "profiles": {"bins": 15, "height": 60.0},
     "layer": {"phases": 16},
+    "wall_forces": {},
 }
 
 
@@ -96,6 +97,18 @@ CASES = {
             },
         },
         period=1.0,
+    ),
+    "walled": Case(
+        *(250.0, 500.0, 1.0, {"wall_forces": {}}),  # the e-fold of its flow
+        {
+            "particles": 40,
+            "box": (20, 30),
+            "effects": SPIN
+            | {
+                "bottom_wall": {"velocity": -1, "temperature": 1},
+                "lid": {"restitution": 0.9, "roughness": 0.5},
+            },
+        },
     ),
 }
 

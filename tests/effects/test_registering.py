@@ -193,13 +193,20 @@ def test_an_effect_acts_where_it_was_registered():
     assert restitution_of(chosen) == (0.45, ["threshold", "halved"])
 
 
-def test_an_effect_that_only_observes_comes_last(write_module):
+@pytest.mark.parametrize("hook", ["observe_contact", "observe_wall", "observe_thermal_wall"])
+def test_an_effect_that_only_observes_comes_last(write_module, hook):
+    """It has no account in the energy balance, and may not act as well."""
     looking = DRAG[: DRAG.index("register(Drag")] + (
         "@jit\ndef observe(effect, index, state, contact):\n    pass\n\n\n"
-        "register(Drag, DragSettings, observe_contact=observe)\n"
+        f"register(Drag, DragSettings, {hook}=observe)\n"
     )
+    acting = looking.replace("=observe", "=observe, resolve=resolve")
+    with pytest.raises(InputError, match=f"be without resolve: an effect with {hook} only looks"):
+        roughgas.register_effect("looking", write_module(acting, "acting").Drag)
     roughgas.register_effect("looking", write_module(looking).Drag)
     assert [*effects.EFFECTS][-1] == "looking"
+    scene = build({**GAS, "effects": {"spin": {"inertia": 0.5}, "looking": {"drag": 1}}}, 1.0, 0.0)
+    assert hooks.accounts(scene.effects) == 1
     with pytest.raises(InputError, match=r"looking: before = 'friction': must be one of contact_a"):
         roughgas.register_effect("looking", sys.modules["dragging"].Drag, before="friction")
     with pytest.raises(InputError, match=r"halved: before = 'contact_log': must be one of spin, "):
