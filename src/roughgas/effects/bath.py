@@ -252,10 +252,11 @@ def _step_spin(bath, account, state, scene, i):
     """Let particle i's spin take a step of its Ornstein-Uhlenbeck process; enter the energy."""
     spin = scene.effects.spin
     before = spin_of(state.spin, scene.box, i)
-    excess = before
-    if bath.rotation is not None:
-        excess = subtract(before, _spin_of_medium(bath.rotation, state.bodies, before, i))
-    spin_change = scale(excess, bath.spin_factor - 1.0)
+    if bath.rotation is None:
+        spin_change = scale(before, bath.spin_factor - 1.0)
+    else:
+        target = _spin_of_medium(bath.rotation, state.bodies, before, i)
+        spin_change = scale(subtract(before, target), bath.spin_factor - 1.0)
     if bath.spin_noise is not None:
         size = math.sqrt(bath.spin_noise / spin_mass_of(state.bodies, spin, i))
         spin_change = add_scaled(spin_change, gaussian_vector(state.random, before, size), 1.0)
