@@ -92,7 +92,7 @@ def test_the_predicted_memory_of_R_is_right_within_a_factor(name):
 @pytest.mark.parametrize(("name", "measured"), [("monolayer", 30.3), ("monolayer, smoother", 29.1)])
 def test_the_energy_of_a_monolayer_relaxes_as_its_contacts_gain_and_lose(name, measured):
     """To 20 % of half the autocorrelation time of E_trans over 60 000 T. Without the gain, which
-    grows with the temperature, the energy would relax twice as fast."""
+    grows with the temperature, the energy would relax nearly twice as fast."""
     effects, r, beta, particles, side, T_tr, R, frequency, _ = MEASURED[name]
     scene, _ = scene_of(effects, r, beta, particles, side)
     state = state_of(T_tr, R, frequency, particles, side)
