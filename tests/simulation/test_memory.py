@@ -34,6 +34,7 @@ BED = {
     "gravity": {"acceleration": 1},
     "floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1},
 }
+MONOLAYER = {"delta": {"speed": 0.1}}
 THERMAL = {"left_wall": {"temperature": 1.0}, "right_wall": {"temperature": 1.0}}
 
 
@@ -58,6 +59,8 @@ MEASURED = {
     "bed, smoother": (BED, 0.9, -0.8, 40, 12.5, 12.0, 0.040, 2.74, 5.2),
     "friction": (kicks() | {"friction": {"mu": 0.1}}, 0.9, 0.5, 40, 25, 0.970, 0.137, 0.63, 10.0),
     "more friction": (kicks() | {"friction": {"mu": 0.3}}, 0.9, 0.5, 40, 25, 0.818, 0.248, 0.59, 6),
+    "monolayer": (MONOLAYER, 0.9, 0.0, 40, 25, 0.176, 0.201, 0.27, 14.9),
+    "monolayer, smoother": (MONOLAYER, 0.9, -0.8, 40, 25, 0.472, 0.0356, 0.443, 34.3),
     "thermal walls": (THERMAL, 0.95, 0.0, 40, 25, 0.380, 0.341, 0.41, 9.9),
     "smooth between thermal walls": (THERMAL, 0.95, -1.0, 40, 25, 0.717, 0.577, 0.56, 60.3),
 }
@@ -84,6 +87,16 @@ def test_the_predicted_memory_of_R_is_right_within_a_factor(name):
     scene, _ = scene_of(effects, r, beta, particles, side)
     state = state_of(T_tr, R, frequency, particles, side, effects)
     assert 1.0 / 2.1 < gas_memory(scene, state).of_R / measured < 2.1
+
+
+@pytest.mark.parametrize(("name", "measured"), [("monolayer", 30.3), ("monolayer, smoother", 29.1)])
+def test_the_energy_of_a_monolayer_relaxes_as_its_contacts_gain_and_lose(name, measured):
+    """To 20 % of half the autocorrelation time of E_trans over 60 000 T. Without the gain, which
+    grows with the temperature, the energy would relax nearly twice as fast."""
+    effects, r, beta, particles, side, T_tr, R, frequency, _ = MEASURED[name]
+    scene, _ = scene_of(effects, r, beta, particles, side)
+    state = state_of(T_tr, R, frequency, particles, side)
+    assert gas_memory(scene, state).energies == pytest.approx(measured, rel=0.2)
 
 
 def test_a_mixture_remembers_as_long_as_its_slowest_exchange():
