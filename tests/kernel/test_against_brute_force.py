@@ -192,6 +192,7 @@ CASES = {  # experiment, r, beta, seed
         *(0.98, 0.2, 2),
     ),
     "bath that flows": (closed(FLOWING, [12, 12]), 0.9, 0.2, 6),
+    "spheres, bath that flows": (closed(FLOWING, [8, 7, 9]), 0.9, 0.2, 17),
     "drag by a fast flow": (closed(FLOWING | SWIFT, [9, 11]), 0.9, 0.2, 7),
     "species, bath that flows": (
         closed(FLOWING, [16, 16]) | {"species": COUNTER_ROTATING, "species_pairs": PAIRS},
@@ -247,6 +248,7 @@ RARE |= {"species, monolayer", "monolayer of smooth spheres", "species, chute", 
 RARE |= {"tilted bed between equal walls", "channel", "falling spheres"}
 RARE |= {"spinners", "spheres that spin about x", "species, spinners"}
 RARE |= {"bath that flows", "drag by a fast flow", "species, bath that flows"}
+RARE |= {"spheres, bath that flows"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),
