@@ -9,11 +9,14 @@ import pytest
 import snakemakes
 import xarray as xr
 from project import Project, jobs_by_rule
-from study_code import EFFECTS, ROOT, add_study
+from study_code import CONFIG, EFFECTS, OBSERVABLES, ROOT, add_study
 
 from roughgas import config
 from roughgas.config import study_code
+from roughgas.tasks.running import run_task
+from roughgas.workflow.studies import Studies
 from roughgas.workflow.sweeps import Sweeps
+from roughgas.workflow.tasks import Tasks
 
 EXPERIMENTS = ("mine.plain", "mine.observed", "mine.metal/yield_speed0.5", "cooling")
 
@@ -67,6 +70,49 @@ def test_kernels_depend_on_the_sources_of_effects(study):
     before = kinds()
     (study / "effects.py").write_text(EFFECTS + "\nADDED = 1\n")
     assert kinds() != before
+
+
+TASKS = """
+from roughgas.tasks import dataset, read_variables
+
+
+def tasks(settings):
+    return ["speed"]
+
+
+def run(task, settings, experiments, progress):
+    progress(1, 1)
+    faster = experiments["metal"].changed({"effects": {"plasticity": {"yield_speed": 2.5}}})
+    variables = read_variables(__file__.replace("tasks.py", "variables.yaml"))
+    return dataset(variables, {"speed": faster.effects["plasticity"].yield_speed})
+"""
+COMBINING = "def combine(results, settings): ...\n\n\ndef table(data): ...\n"
+
+
+def test_tasks_run_experiments_with_effects_of_the_study(study, tmp_path):
+    configured = CONFIG + "tasks: {experiments: [metal], length: 1}\n"
+    files = {"config.yaml": configured, "tasks.py": TASKS, "results.py": COMBINING}
+    files["variables.yaml"] = '"":\n  speed / a/T: yield speed\n'
+    for name, text in files.items():
+        (study / name).write_text(text)
+
+    def tasks():
+        configuration = config.load("config.yaml")
+        assert not configuration.refused
+        return Tasks(Studies(configuration, Sweeps(configuration, [])))
+
+    first = tasks()
+    assert first.study_options("mine/tasks") == ["--studies", "studies/mine"]
+    settings = first.settings("paper", "mine/tasks", "speed")
+    study_code.use(())
+    run_task("studies/mine", "speed", settings=settings, studies=["studies/mine"], output="data.nc")
+    with xr.open_dataset("data.nc") as data:
+        assert data.speed == 2.5
+    code = first.code("paper", "mine/tasks", "speed")
+    (study / "observables.py").write_text(OBSERVABLES + "\nADDED = 1\n")
+    assert tasks().code("paper", "mine/tasks", "speed") == code
+    (study / "effects.py").write_text(EFFECTS + "\nADDED = 1\n")
+    assert tasks().code("paper", "mine/tasks", "speed") != code
 
 
 @pytest.fixture(scope="module")
