@@ -237,7 +237,7 @@ def simulations():
         "mixture": (gas | {"species": TWO, "schedule": COOLING}, []),
         "spheres": (scene("spheres", 20, [12, 12, 12]) | {"schedule": COOLING}, []),
         "sheared": (scene("sheared", 20, [25, 25]) | {"schedule": STEADY}, ["stress"]),
-        "bed": (bed | {"schedule": of_bed}, ["profiles", "layer", "contacts"]),
+        "bed": (bed | {"schedule": of_bed}, ["profiles", "layer", "contacts", "wall_forces"]),
         "pattern": (scene("layer", 40) | {"schedule": of_layer}, ["pattern"]),
         "heated": (heated | {"schedule": STEADY}, BOX_OBSERVABLES),
         "stages": (heated | {"schedule": STAGES}, []),

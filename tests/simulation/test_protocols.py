@@ -7,7 +7,6 @@ from raw import build, cooling, expected_collisions, packing, steady
 
 from roughgas import theory
 from roughgas.effects.contacts import STRESSES, columns_of_pairs
-from roughgas.simulation.energies import Energies
 from roughgas.simulation.simulation import Simulation
 
 BED = settings("bed", 40, [12.5, "open"]) | {
@@ -70,9 +69,8 @@ def test_a_start_that_would_leave_less_than_half_is_not_taken():
     """A small step just after the middle of a run without equilibration."""
     series = 1.0 + 0.001 * np.random.default_rng(1).standard_normal(104)
     series[:54] += 0.005
-    energies = Energies(series, None)
-    assert steady._measurement_start(energies, 0, 104, 1) == (0, False)
-    assert steady._measurement_start(energies, 40, 64, 1) == (54, True)
+    assert steady._measurement_start([series], 0, 104, 1) == (0, False)
+    assert steady._measurement_start([series], 40, 64, 1) == (54, True)
 
 
 def test_R_over_collisions_does_not_depend_on_the_phases_of_samples():

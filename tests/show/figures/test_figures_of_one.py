@@ -72,7 +72,7 @@ def test_the_command_draws_points_too(tmp_path, monkeypatch, capsys):
     write(tmp_path, "sheared", "0.9", "0.5").rename("p.nc")
     assert main(["plot", "p.nc", "-o", "p.svg"]) == 0
     assert main(["plot", "p.nc", "--beta", "0.5", "-o", "q.svg"]) == 2
-    message = "dataset = p.nc: must be a reduced one for --over, --r and --beta"
+    message = "dataset = p.nc: must be a reduced one for --over, --r, --beta and --theory"
     assert message in capsys.readouterr().err
 
 
