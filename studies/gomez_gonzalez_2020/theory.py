@@ -43,9 +43,9 @@ def E_trans(gas: xr.Dataset) -> xr.DataArray:
 
 def stationary(attributes, point) -> Moments:
     """Return the stationary moments at a point of a dataset with these attributes."""
-    settings = json.loads(attributes["experiment_json"])
-    bath, height = settings["effects"]["langevin"], settings["box"][1]
+    bath = json.loads(attributes["langevin_json"])
     packing, kind = attributes["packing"], (attributes["dimension"], attributes["inertia"])
+    height = (attributes["particles"] / theory.number_density(packing, kind[0])) ** (1 / kind[0])
     r, beta, rate = point["r"], point["beta"], point["velocity"] / height
     crowding = theory.contact_value(packing, kind[0])
     density = theory.number_density(packing, kind[0])

@@ -32,6 +32,7 @@ from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.sample_sizes import UNKNOWN, YES
 from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES_ATTRIBUTE
+from roughgas.theory.prediction import FLOWS
 from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE
 
 if TYPE_CHECKING:
@@ -297,8 +298,8 @@ def _theory_attributes(scene, experiment):
     if effects.thermostat is not None:
         attributes["spin_share"] = experiment.effects["thermostat"].spin_share
     if effects.langevin is not None:
-        rate = {} if effects.shear is None else {"shear_rate": shear_rate(scene)}
-        attributes[LANGEVIN_ATTRIBUTE] = json.dumps(experiment.raw["effects"]["langevin"] | rate)
+        medium = {} if effects.shear is None else {FLOWS: True}
+        attributes[LANGEVIN_ATTRIBUTE] = json.dumps(experiment.raw["effects"]["langevin"] | medium)
     if experiment.species:
         species_settings = {
             name: experiment.raw.get(name) or [] for name in ("species", "species_pairs")

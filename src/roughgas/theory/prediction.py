@@ -27,6 +27,8 @@ from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE, bath_temperatures
 OUTSIDE_BATH_THEORY = (SPECIES_ATTRIBUTE, "mu", "spin_share")
 """Attributes of gases with species, friction or a thermostat, which the theory of a bath lacks."""
 
+FLOWS = "flows"
+"""Key in `langevin_json` of a bath whose medium flows: the rate equations have no shear."""
 NOT_IN_BATH_THEORY = {"interval", "spin_velocity", "spin_axis"}
 """Settings of a bath that its rate equations do not have."""
 
@@ -130,13 +132,13 @@ def ratio_in_bath(attributes: Attributes, r: Any, beta: Any) -> np.ndarray:
     It has the broadcast shape of `r` and `beta`. `attributes` are the attributes of the dataset;
     its settings of the bath are in `langevin_json`. NaN where the packing is unknown, nothing
     spins, or the bath supplies no energy, and for gases outside of these rate equations: with
-    several species, friction, a thermostat, or a medium that rotates or flows (`shear_rate`). A
+    several species, friction, a thermostat, or a medium that rotates or flows (FLOWS). A
     swept parameter of the bath is among the attributes, as is the inertia.
     """
     r, beta = np.broadcast_arrays(r, beta)
     settings = json.loads(attributes[LANGEVIN_ATTRIBUTE])
     section, _, swept = attributes.get("swept", "").rpartition(".")
-    moves = settings.get("spin_velocity") or settings.get("shear_rate") or swept == "spin_velocity"
+    moves = settings.get("spin_velocity") or settings.get(FLOWS) or swept == "spin_velocity"
     if moves or any(name in attributes for name in OUTSIDE_BATH_THEORY):
         return np.full(r.shape, np.nan)
     names = {"inertia", "packing", *(settings.keys() - NOT_IN_BATH_THEORY)}
