@@ -46,6 +46,7 @@ from roughgas.claims.verdicts import (
     text,
     worst_verdict,
 )
+from roughgas.data.reduced import STEADY_SHARE
 from roughgas.data.variables import third_axis
 from roughgas.results.comparison import Row
 from roughgas.results.long_table import LongRow, read_long_rows
