@@ -20,8 +20,8 @@ def tails_are_overpopulated(gas: xr.Dataset) -> Finding:
     largest, location = excess.largest()
     reason = (
         f"Tails beyond {BEGIN_OF_TAILS:g} root mean squares are larger than a Gaussian's "
-        f"significantly at {int(above.sum())} of {excess.size} points; the largest difference, over "
-        f"the Gaussian's, is {text(largest)} at {location}."
+        f"significantly at {int(above.sum())} of {excess.size} points; the largest difference, "
+        f"over the Gaussian's, is {text(largest)} at {location}."
     )
     verdict = grade(bool(above.all()), above.mean() > 0.5)
     if not excess.is_significant().any():

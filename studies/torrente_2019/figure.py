@@ -1,6 +1,5 @@
 """Figure of two gases with the same noise: their temperatures over time, and the rate equations."""
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -24,8 +23,8 @@ def draw(hot: xr.Dataset, cold: xr.Dataset) -> Figure:
         axes.plot(curve.time, curve.expected, color=style.colour, lw=0.9, zorder=1)
     axes.axvspan(curve.measured_from, curve.time[-1], color="0.92", zorder=0, label="compared")
     axes.plot([], [], color="0.3", lw=0.9, label="rate equations")
-    axes.set(xlabel="time / $T$", ylabel=r"$T = (T_\mathrm{tr} + T_\mathrm{rot})/2$", yscale="log")
-    axes.set_ylim(top=1.3 * float(np.max(curve.expected)) + 1.0)
+    axes.set(xlabel="time / $T$", ylabel=r"$T = (T_\mathrm{tr} + T_\mathrm{rot})/2$")
+    axes.set_ylim(bottom=0.0)
     title = judged_title(__file__, "hotter_gets_colder", [hot, cold], "Temperatures of two gases")
     axes.set_title(title, fontsize=8.5, fontweight="bold", loc="left")
     figure.suptitle(

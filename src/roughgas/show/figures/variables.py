@@ -17,13 +17,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
 
 from roughgas.base import Record
 from roughgas.data.reduced import check_swept, observed_names, sweep_axes
 from roughgas.show.figures import panel, sweep
-from roughgas.show.style import LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
+from roughgas.show.style import GREY, LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
 from roughgas.theory.prediction import equation_of
 
+DOTTED = ":"
+"""Style of the theory of a variable along its own coordinate."""
 THEORY = "_theory"
 """End of the names of variables that hold theory beside a variable."""
 MAX_ROWS, MAX_LINES = 5, 10
@@ -111,9 +114,21 @@ def draw(
     message = wrap(_message(data, names, layout.over, theories), int(width * LETTERS_PER_INCH))
     figure.suptitle("\n".join(message), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     figure.align_ylabels()
-    if not all(panel.trusted(data, name).all() for name in names):
-        figure.legend(handles=[panel.key_of_trust()], loc="outside lower right")
+    if keys := [*_keys_of_theory(data, names), *_keys_of_trust(data, names)]:
+        figure.legend(handles=keys, loc="outside lower right", ncols=len(keys))
     return figure
+
+
+def _keys_of_theory(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
+    """Return a legend key for each style of the lines of theory beside variables."""
+    styles = {DOTTED if _coordinate(data, name) else "-" for name in names if name + THEORY in data}
+    return [panel.key(GREY, "theory", "", style) for style in sorted(styles)]
+
+
+def _keys_of_trust(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
+    """Return a legend key of errors that are not trusted; [] if all are."""
+    all_trusted = all(panel.trusted(data, name).all() for name in names)
+    return [] if all_trusted else [panel.key_of_trust()]
 
 
 def _coordinate(data: xr.Dataset, name: str) -> str | None:
@@ -178,21 +193,20 @@ def _draw_along(
     """
     middle = {layout.series: _middle(layout.values[layout.series])}
     x = data[coordinate].values
-    for value, style in zip(
-        sweep.evenly_spaced(data[layout.over].values.tolist(), len(LINE_STYLES)),
-        LINE_STYLES,
-        strict=False,
-    ):
+    few = sweep.evenly_spaced(data[layout.over].values.tolist(), len(LINE_STYLES))
+    first = few[0]
+    for value, style in zip(few, LINE_STYLES, strict=False):
         label = sweep.label_of(layout.over, value)
         row = data.sel({layout.over: value, **middle, **selection})
-        for line, error, trusted, text, inner in _lines(row, name, coordinate):
-            text = ", ".join(filter(None, (label, text)))
+        for number, (line, error, trusted, text, inner) in enumerate(_lines(row, name, coordinate)):
+            # the first value explains the styles of lines, which other values share
+            words = [label] * (number == 0) + [text] * bool(text and value == first)
             options: Style = {"color": style.colour, "linestyle": inner.line if text else "-"}
-            axes.plot(x, line, label=text, **options)
+            axes.plot(x, line, label=", ".join(words) or None, **options)
             sweep.draw_errors(axes, x, line, error, trusted, style.colour)
         if name + THEORY in data:
             for line, *_ in _lines(row, name + THEORY, coordinate):
-                axes.plot(x, line, color=style.colour, lw=1.6, ls=":", zorder=1)
+                axes.plot(x, line, color=style.colour, lw=1.6, ls=DOTTED, zorder=1)
     label = coordinate.replace("_", " ")
     axes.set_xlabel(f"{label}{sweep.unit_suffix(data[coordinate])}")
 
@@ -220,6 +234,8 @@ def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theori
     """
     *first, last = (name.replace("_", " ") for name in names)
     text = f"{', '.join(first)} and {last}" if first else last
+    if all(name in theories for name in names):
+        return f"{text} over {sweep.name_of_axis(over)}, beside theory"
     known = [name.replace("_", " ") for name in names if name in theories]
     beside = [f"{' and '.join(known)} beside theory"] if known else []
     if "R" in names and "R" not in theories:
