@@ -85,7 +85,7 @@ def layout_of(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[
     """
     third = third_axis(data.attrs)
     names = [name for name in (third, *GRID_DIMS) if name]
-    over = over or third or "beta"
+    over = over or third or ("r" if data.sizes["beta"] == 1 < data.sizes["r"] else "beta")
     if over not in names:
         raise unknown_name_error("axis", over, names)
     other_axes = [name for name in ("beta", third, "r") if name and name != over]

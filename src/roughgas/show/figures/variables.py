@@ -21,9 +21,10 @@ from matplotlib.lines import Line2D
 
 from roughgas.base import Record
 from roughgas.data.reduced import check_swept, observed_names, sweep_axes
+from roughgas.data.variables import third_axis
 from roughgas.show.figures import panel, sweep
 from roughgas.show.style import GREY, LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
-from roughgas.theory.prediction import equation_of
+from roughgas.theory.prediction import equation_of, predicted_ratio
 
 DOTTED = ":"
 """Style of the theory of a variable along its own coordinate."""
@@ -238,9 +239,17 @@ def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theori
         return f"{text} over {sweep.name_of_axis(over)}, beside theory"
     known = [name.replace("_", " ") for name in names if name in theories]
     beside = [f"{' and '.join(known)} beside theory"] if known else []
-    if "R" in names and "R" not in theories:
+    if "R" in names and "R" not in theories and _has_theory(data):
         beside.append(f"R beside {equation_of(data.attrs).name}")
     return ", ".join([f"{text} over {sweep.name_of_axis(over)}", *beside])
+
+
+def _has_theory(data: xr.Dataset) -> bool:
+    """Return whether the package has a theory of R of the last point of the sweep."""
+    third = third_axis(data.attrs)
+    swept = {third: data[third].values[-1]} if third else {}
+    ratio = predicted_ratio(data.attrs | swept, data.r.values[-1:], data.beta.values[-1:])
+    return bool(np.isfinite(ratio).all())
 
 
 def _middle(values: Sequence[Any]) -> Any:
