@@ -41,7 +41,7 @@ def tables_of_studies(root: str | Path) -> dict[tuple[str, str], str]:
     rows = papers.read(Path(root, "figures", "papers.csv"))
     verdicts = {
         (study, "verdicts"): papers.table_of_statements([row for row in rows if row.study == study])
-        for study in {row.study for row in rows}
+        for study in dict.fromkeys(row.study for row in rows)
     }
     return verdicts | {
         (study, name): table
