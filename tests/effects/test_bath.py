@@ -205,7 +205,7 @@ def test_theory_predicts_nothing_outside_its_rate_equations(attributes):
     assert np.isnan(predicted_ratio(GAS | {"theory": "lun"} | attributes, 0.9, 0.2))
 
 
-@pytest.mark.parametrize("bath", [{"spin_velocity": 1.0}, {"shear_rate": 0.1}, {"spin_axis": "z"}])
+@pytest.mark.parametrize("bath", [{"spin_velocity": 1.0}, {"flows": True}, {"spin_axis": "z"}])
 def test_theory_has_no_medium_that_moves(bath):
     """The axis alone changes nothing."""
     attributes = GAS | {"theory": "lun", "langevin_json": json.dumps(BATH | bath)}

@@ -19,7 +19,7 @@ from roughgas.data.reduced import read_reduced
 from roughgas.results.comparison import write_table
 from roughgas.statistics.estimates import Estimate
 
-EXPERIMENTS = re.compile(r"^experiments:\n((?:[ \n].*\n?|\n)*)", re.MULTILINE)
+EXPERIMENTS = re.compile(r"^experiments:\n((?: .*\n|\n)*)", re.MULTILINE)
 """The experiments in config.yaml of a study: a block up to the next key."""
 TITLE = "# Other people's papers\n\n"
 
