@@ -14,6 +14,7 @@ per particle: a collision counts for both its particles.
 
 from roughgas.theory.arguments import moment_of_inertia
 from roughgas.theory.baths import (
+    KineticPressure,
     mean_spin_decay,
     mean_spin_of_spinners,
     pressure_in_sheared_bath,
