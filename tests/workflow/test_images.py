@@ -17,8 +17,8 @@ import snakemakes
 from project import ROOT
 
 STUDIES = sorted(path.parent.name for path in ROOT.glob("studies/*/config.yaml"))
-TARGETS = ("figures", "friction", "extensions", "article", "numbers", "accuracy", "hard_cases")
-TARGETS += ("crate",)
+TARGETS = ("figures", "friction", "extensions", "papers", "article", "numbers", "accuracy")
+TARGETS += ("hard_cases", "crate")
 BUILD_WHEEL = "import hatchling.build as backend, sys; backend.build_editable(sys.argv[1])"
 LIST_STUDIES = (
     "import json; from roughgas.config import load; from roughgas.config.packaged import SHIPPED;"

@@ -23,7 +23,10 @@ STUDIED, OF_TASKS_ALONE = (
     }
     for alone in (False, True)
 )
-OF_STUDIES = STUDIED | {"study_page", "study_slides"}
+WITHOUT_FIGURES = {name for name, study in FOLDERS.items() if not study.figures}
+"""Studies without figure.py, whose experiments have the general figure."""
+OF_STUDIES = STUDIED | WITHOUT_FIGURES | {"study_page", "study_slides", "plot"}
+OF_STUDIES |= {"table_of_papers", "quoted_by_documentation"}
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b"}
 TABLES = {"table", "table_of_extensions", "run_times"}
 REDUCED = FIGURES | OF_STUDIES | TABLES | {"reduce", "claims", "page", "document"}

@@ -5,6 +5,7 @@ import shutil
 import hostile
 import pytest
 from hostile import ATTACK
+from project import TINY as PROJECT_TINY
 
 MINIMAL_STUDY = """\
 experiments:
@@ -57,11 +58,13 @@ def test_a_thirteenth_paper_is_added_by_copying_a_folder(study_project):
     shutil.copytree(studies / "brilliantov_2007", studies / "mine")
     for folder in others:  # all papers take minutes
         shutil.rmtree(folder)
+    names = {folder.name for folder in others}
+    tiny = {key: change for key, change in PROJECT_TINY.items() if key.split(".")[0] not in names}
     text = (studies / "mine" / "config.yaml").read_text()
     (studies / "mine" / "config.yaml").write_text(
         text.replace("paper: N. V.", "paper: Mine, N. V.")
     )
-    study_project.configure(lambda config: config["scales"]["tiny"].update(SMALL_COPY))
+    study_project.configure(lambda config: config["scales"].update(tiny=tiny | SMALL_COPY))
     study_project.succeed("-j2", *TINY, "papers")
     table = (study_project.folder / "results/tiny/papers.csv").read_text().splitlines()
     assert len(others) == 12 and len(table) == 3

@@ -32,8 +32,7 @@ from roughgas.statistics.estimates import Estimate
 from roughgas.statistics.sample_sizes import UNKNOWN, YES
 from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES_ATTRIBUTE
-from roughgas.theory.prediction import FLOWS
-from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE
+from roughgas.theory.rate_equations import FLOWS, LANGEVIN_ATTRIBUTE
 
 if TYPE_CHECKING:
     from roughgas.simulation.flow_tracker import FlowTracker

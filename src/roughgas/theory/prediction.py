@@ -22,13 +22,16 @@ from roughgas.theory import mixture_states
 from roughgas.theory.closed_forms import VOLUME
 from roughgas.theory.friction import friction_ratio
 from roughgas.theory.mixtures import SPECIES_ATTRIBUTE, Mixture, Temperatures, mixture
-from roughgas.theory.rate_equations import LANGEVIN_ATTRIBUTE, bath_temperatures, stationary_ratio
+from roughgas.theory.rate_equations import (
+    FLOWS,
+    LANGEVIN_ATTRIBUTE,
+    bath_temperatures,
+    stationary_ratio,
+)
 
 OUTSIDE_BATH_THEORY = (SPECIES_ATTRIBUTE, "mu", "spin_share")
 """Attributes of gases with species, friction or a thermostat, which the theory of a bath lacks."""
 
-FLOWS = "flows"
-"""Key in `langevin_json` of a bath whose medium flows: the rate equations have no shear."""
 NOT_IN_BATH_THEORY = {"interval", "spin_velocity", "spin_axis"}
 """Settings of a bath that its rate equations do not have."""
 

@@ -45,6 +45,8 @@ RUNGE_KUTTA_STEP = 0.05
 """Largest step, in mean free times of a gas that has all its energy in translation."""
 LANGEVIN_ATTRIBUTE = "langevin_json"
 """Attribute of datasets that holds the settings of a Langevin bath."""
+FLOWS = "flows"
+"""Key in LANGEVIN_ATTRIBUTE of a bath whose medium flows: these equations have no shear."""
 SEARCHED_DECADES, BISECTIONS = 30.0, 110
 """The stationary T_tr in a bath is searched over this many decades above and below 1, in steps."""
 
