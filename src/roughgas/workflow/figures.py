@@ -164,9 +164,13 @@ class Figures:
 
         `folder` is the folder of its scale in figures/, "" for `paper`.
         """
+        return self.sweeps.written(scale_of(folder), self._filmed(movie)).text
+
+    def _filmed(self, movie: str) -> str:
+        """Return the name of the experiment in a movie; raise InputError for an unknown movie."""
         if movie not in self.movies:
             raise InputError("movie", movie, f"be one of {', '.join(self.movies)}")
-        return self.sweeps.written(scale_of(folder), self.movies[movie][0]).text
+        return self.movies[movie][0]
 
     def movie_code(self, folder: str, movie: str) -> str:
         """Return the fingerprint of the code of a movie, and of the files of radii in it.
@@ -174,7 +178,7 @@ class Figures:
         `folder` is the folder of its scale in figures/, "" for `paper`.
         """
         code = code_of("show.movies", alone=["cli.excerpts"])
-        of_studies = self.sweeps.codes_of_studies(scale_of(folder), self.movies[movie][0])
+        of_studies = self.sweeps.codes_of_studies(scale_of(folder), self._filmed(movie))
         return " ".join([with_files(code, self.movie_settings(folder, movie)), *of_studies])
 
     def movie_options(self, movie: str) -> list[str]:
@@ -187,7 +191,7 @@ class Figures:
 
         `folder` is the folder of its scale in figures/, "" for `paper`.
         """
-        return self.sweeps.study_options(scale_of(folder), self.movies[movie][0])
+        return self.sweeps.study_options(scale_of(folder), self._filmed(movie))
 
     def study_movie_data(self, folder: str, study: str) -> str:
         """Return the path of the dataset of tasks that the movie of a study shows.
