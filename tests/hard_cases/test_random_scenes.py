@@ -86,7 +86,7 @@ def spoiled(effect_settings):
     """Yield the settings with each parameter in turn at each invalid value."""
     for name in effect_settings:
         for field in fields_of(EFFECTS[name].settings):
-            either_sign = "in [-1e" in field.legal
+            either_sign = any(f"in [-1{power}" in field.legal for power in ("e", "0"))
             for value in INVALID_VALUES:
                 legal = value == -7 and either_sign  # as of a velocity
                 if not legal and (value is not None or field.required):
