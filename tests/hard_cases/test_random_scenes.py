@@ -46,7 +46,7 @@ QUICK_MIXTURES = [(set(KERNELS["gas"]["effects"]), 2, "sawtooth")]
 """The composition of which other tests run mixtures as well."""
 
 
-INVALID_VALUES = (math.nan, math.inf, -7, "x", None, True, [], {})
+INVALID_VALUES = (math.nan, math.inf, -7, "no word", None, True, [], {})
 """Values that no parameter may have, except None for parameters with a default."""
 
 
