@@ -68,7 +68,7 @@ def caption(report, product):
 def test_the_report_opens_on_its_description(report):
     assert "scale tiny" in report.wait(lambda: report.find("#app .prose"))[0].text
     headings = [link.text for link in report.find("nav li a") if link.text]
-    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "5 This run"]
+    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "6 This run"]
 
 
 def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
