@@ -1,7 +1,10 @@
 """A study with effects and observables of its own, as text of its files."""
 
 import re
+import shutil
 from pathlib import Path
+
+from roughgas.config import study_code
 
 ROOT = Path(__file__).parent.parent
 GUIDE = (ROOT / "docs/effects.md").read_text()
@@ -66,6 +69,14 @@ experiments:
     schedule: {{plateau: 20, replicas: 3}}
     sweep: {{r: ["0.8"], beta: ["0"], seeds: 2, plasticity.yield_speed: ["0.5", "1"]}}
 """
+
+
+def study_in_present_folder(tmp_path, monkeypatch):
+    """Yield the folder of a study in a new present folder, and then forget its code."""
+    shutil.copy(ROOT / "config.yaml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    yield add_study()
+    study_code.use(())
 
 
 def add_study(name="mine", effects=EFFECTS, observables=OBSERVABLES, config=CONFIG, folder="."):

@@ -11,6 +11,7 @@ from roughgas.claims.published import references
 from roughgas.claims.variables import (
     deviation_of,
     species_temperature_ratio,
+    steady,
     theory_over_grid,
 )
 from roughgas.claims.verdicts import (
@@ -46,12 +47,16 @@ from roughgas.claims.verdicts import (
     text,
     worst_verdict,
 )
-from roughgas.data.reduced import STEADY_SHARE
 from roughgas.data.variables import third_axis
 from roughgas.results.comparison import Row
 from roughgas.results.long_table import LongRow, read_long_rows
 from roughgas.statistics.errors import stderr_over_seeds, sum_error
-from roughgas.statistics.estimates import SIGNIFICANCE, SIGNIFICANT, Estimate
+from roughgas.statistics.estimates import (
+    SIGNIFICANCE,
+    SIGNIFICANT,
+    Estimate,
+    mean_by_scatter,
+)
 from roughgas.statistics.fits import limit_at_zero, power_law
 from roughgas.statistics.student import t_quantile
 from roughgas.theory.prediction import predicted_ratio, species_at

@@ -2,9 +2,18 @@
 
 import math
 
+import numpy as np
 import xarray as xr
 
-from roughgas.judging import Estimate, Finding, check_power, grade, text
+from roughgas.judging import (
+    Estimate,
+    Finding,
+    NotTestedError,
+    check_power,
+    grade,
+    steady,
+    text,
+)
 
 THICKENED = 2.0
 """Ratio of viscosities from which a suspension counts as thickened."""
@@ -27,6 +36,8 @@ def suspension_thickens(gas: xr.Dataset) -> Finding:
 
 def _viscosity(point: xr.Dataset) -> Estimate:
     """Return -P_xy of the kinetic stress over the velocity of the images, of one point."""
+    if np.isnan(steady(point, point.E_trans)):
+        raise NotTestedError("a suspension at an end of the sweep is not known to be steady")
     element = {"component": "x", "along": "y"}
     stress, stderr, dof = (
         float(point[f"stress_kinetic{suffix}"].sel(element)) for suffix in ("", "_stderr", "_dof")

@@ -32,11 +32,11 @@ from roughgas.judging import (
     effect_of_restitution,
     grade,
     is_large,
+    mean_by_scatter,
     over_seeds,
     predicted_ratio,
     ratio_sample,
     sample,
-    stderr_over_seeds,
     sum_error,
     t_quantile,
     tendency,
@@ -243,7 +243,7 @@ def _mean_log(ratios: xr.DataArray) -> Estimate:
     logs = np.log(ratios.values[np.isfinite(ratios.values)])
     if logs.size < 3:
         raise NotTestedError("fewer than three common points have several seeds and a steady state")
-    return Estimate(float(logs.mean()), stderr_over_seeds(logs), logs.size - 1)
+    return mean_by_scatter(logs)
 
 
 def _ratio(log: Estimate) -> str:

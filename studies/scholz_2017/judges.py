@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from roughgas.judging import STEADY_SHARE, Finding, check_power, grade, sample, text
+from roughgas.judging import Finding, check_power, grade, sample, steady, text
 
 BEGIN_OF_TAILS = 3.5
 """Velocity component in root mean squares beyond which its distribution counts as a tail."""
@@ -45,6 +45,5 @@ def _excess_of_tails(gas: xr.Dataset):
         / components
     )
     dof = gas.velocity_histogram_dof.where(is_tail).min(dims)
-    steady = gas.equilibrated > STEADY_SHARE
-    excess = (share / gaussian - 1.0).where(steady)
+    excess = steady(gas, share / gaussian - 1.0)
     return sample(excess, (stderr / gaussian).values, dof.values)

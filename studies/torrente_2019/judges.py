@@ -1,6 +1,5 @@
 """Judges of two gases with the same noise, of which the hotter one gets colder."""
 
-import numpy as np
 import xarray as xr
 
 from roughgas.judging import (
@@ -9,7 +8,7 @@ from roughgas.judging import (
     Finding,
     check_power,
     grade,
-    stderr_over_seeds,
+    mean_by_scatter,
     text,
 )
 
@@ -29,7 +28,7 @@ def hotter_gets_colder(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
             temperatures(hot).in_last_stage(), temperatures(cold).in_last_stage(), strict=True
         )
     )
-    difference = _mean(gap)
+    difference = mean_by_scatter(gap)
     if not difference.is_significant:
         check_power(difference.detectable, abs(expected))
     fits = abs(difference.minus(Estimate(expected, 0.0)).sigma) < SIGNIFICANT
@@ -46,7 +45,7 @@ def rate_equations_have_both(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
     ratios = {}
     for name, gas in (("hot", hot), ("cold", cold)):
         measured, expected = temperatures(gas).in_last_stage()
-        ratios[name] = _mean(measured / expected - 1.0)
+        ratios[name] = mean_by_scatter(measured / expected - 1.0)
     largest = max(ratios.values(), key=lambda ratio: abs(ratio.value))
     verdict = grade(
         *(
@@ -60,8 +59,3 @@ def rate_equations_have_both(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
     return Finding(
         verdict, f"T over the rate equations - 1 is {reason}.", (("largest", largest),), detectable
     )
-
-
-def _mean(of_seeds: np.ndarray) -> Estimate:
-    """Return the mean of numbers of independent seeds, with its error from their scatter."""
-    return Estimate(float(of_seeds.mean()), stderr_over_seeds(of_seeds), len(of_seeds) - 1.0)

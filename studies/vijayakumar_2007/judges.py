@@ -8,6 +8,7 @@ from roughgas.judging import (
     check_power,
     grade,
     sample,
+    steady,
     sum_error,
     text,
 )
@@ -42,4 +43,4 @@ def _slip(gas: xr.Dataset) -> tuple[xr.DataArray, np.ndarray, np.ndarray]:
     outer = flow.isel(height=[0, -1]).mean("height")
     error = np.sqrt((stderr.isel(height=[0, -1]) ** 2).sum("height")) / 2.0
     dof = gas.flow_profile_dof.sel(component="x").isel(height=[0, -1]).min("height")
-    return outer / highest, (error / highest).values, dof.values
+    return steady(gas, outer / highest), (error / highest).values, dof.values

@@ -1,14 +1,11 @@
 """Effects of a study act as those of the package, to the bit."""
 
-import shutil
-
 import numpy as np
 import pytest
 import xarray as xr
-from study_code import ROOT, add_study
+from study_code import study_in_present_folder
 
 import roughgas
-from roughgas.config import study_code
 
 POINT = {"r": 0.8, "beta": 0.0, "seed": 1, "progress": False, "config": "config.yaml"}
 
@@ -16,10 +13,7 @@ POINT = {"r": 0.8, "beta": 0.0, "seed": 1, "progress": False, "config": "config.
 @pytest.fixture
 def study(tmp_path, monkeypatch):
     """The folder of a study in the present folder."""
-    shutil.copy(ROOT / "config.yaml", tmp_path)
-    monkeypatch.chdir(tmp_path)
-    yield add_study()
-    study_code.use(())
+    yield from study_in_present_folder(tmp_path, monkeypatch)
 
 
 SAME = {"particles": 20, "box": (25, 25), "schedule": {"plateau": 20, "replicas": 3}}

@@ -1,19 +1,17 @@
 """Observables of a study, functions in its observables.py, in points and in reduced datasets."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from study_code import OBSERVABLES, ROOT, add_study
+from study_code import OBSERVABLES, study_in_present_folder
 
 import roughgas
 from roughgas.base import InputError
 from roughgas.base.files import study_module
 from roughgas.base.labels import grid_points
 from roughgas.cli import main
-from roughgas.config import study_code
 from roughgas.data.netcdf import unit_of
 from roughgas.scene import build
 from roughgas.simulation.run_points import checkpoint_owner
@@ -25,10 +23,7 @@ RUN = ["run", "mine.observed", "--r=0.9", "--beta=0.5", "-o", "point.nc"]
 @pytest.fixture(autouse=True)
 def study(tmp_path, monkeypatch):
     """The folder of a study in the present folder."""
-    shutil.copy(ROOT / "config.yaml", tmp_path)
-    monkeypatch.chdir(tmp_path)
-    yield add_study()
-    study_code.use(())
+    yield from study_in_present_folder(tmp_path, monkeypatch)
 
 
 def test_results_are_described_and_have_errors(study):

@@ -1,7 +1,6 @@
 """Jobs of a study with effects and observables: what they run, and when they run again."""
 
 import shlex
-import shutil
 import subprocess
 import sys
 
@@ -9,7 +8,7 @@ import pytest
 import snakemakes
 import xarray as xr
 from project import Project, jobs_by_rule
-from study_code import CONFIG, EFFECTS, OBSERVABLES, ROOT, add_study
+from study_code import CONFIG, EFFECTS, OBSERVABLES, add_study, study_in_present_folder
 
 from roughgas import config
 from roughgas.config import study_code
@@ -24,10 +23,7 @@ EXPERIMENTS = ("mine.plain", "mine.observed", "mine.metal/yield_speed0.5", "cool
 @pytest.fixture
 def study(tmp_path, monkeypatch):
     """The folder of a study in the present folder."""
-    shutil.copy(ROOT / "config.yaml", tmp_path)
-    monkeypatch.chdir(tmp_path)
-    yield add_study()
-    study_code.use(())
+    yield from study_in_present_folder(tmp_path, monkeypatch)
 
 
 def codes():

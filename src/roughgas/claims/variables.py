@@ -53,6 +53,12 @@ def theory_over_grid(
     return xr.DataArray(np.reshape(results, shape), coordinates, (*grid, *dims))
 
 
+def steady(data: xr.Dataset, values: xr.DataArray) -> xr.DataArray:
+    """Return values over the grid of a reduced dataset, NaN where the gas is not known to be
+    steady."""
+    return values.where(data.equilibrated > STEADY_SHARE)
+
+
 def deviation_of(
     data: xr.Dataset, name: str, expected: xr.DataArray, relative: bool = False
 ) -> Sample:
@@ -64,7 +70,7 @@ def deviation_of(
     """
     if name not in data:
         raise NotTestedError(f"the dataset holds no {name}")
-    measured, theory = xr.broadcast(data[name].where(data.equilibrated > STEADY_SHARE), expected)
+    measured, theory = xr.broadcast(steady(data, data[name]), expected)
     gap = measured - theory
     stderr, dof, _ = xr.broadcast(
         data[f"{name}_stderr"], data.get(f"{name}_dof", data.n_seeds - 1.0), gap

@@ -23,8 +23,7 @@ from roughgas.results.comparison import (
     row_cells,
     write_table,
 )
-from roughgas.statistics.errors import stderr_over_seeds
-from roughgas.statistics.estimates import SIGNIFICANCE, Estimate
+from roughgas.statistics.estimates import SIGNIFICANCE, Estimate, mean_by_scatter
 from roughgas.statistics.false_discovery import false_discovery_level
 
 AGREES, DIFFERS, NO_ERROR = "agrees", "differs", "differs, no error published"
@@ -107,11 +106,7 @@ def biases(rows: Sequence[tuple[str, Row]]) -> list[Bias]:
     for study, row in rows:
         if math.isfinite(row.t) and not row.is_without_chance:
             t_by_source.setdefault((study, row.tier, row.source), []).append(row.t)
-    means = {
-        key: Estimate(float(np.mean(t)), stderr_over_seeds(np.array(t)), len(t) - 1)
-        for key, t in t_by_source.items()
-        if len(t) > 1
-    }
+    means = {key: mean_by_scatter(np.array(t)) for key, t in t_by_source.items() if len(t) > 1}
     level = false_discovery_level([m.probability for m in means.values()], FALSE_DISCOVERIES)
     return [Bias(*key, mean, mean.probability <= level) for key, mean in means.items()]
 

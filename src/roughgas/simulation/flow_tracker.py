@@ -24,8 +24,7 @@ from roughgas.simulation.free_flight import in_starting_order
 from roughgas.simulation.gas import Batch, Gas
 from roughgas.simulation.leg import Changes, Leg
 from roughgas.simulation.tracker import Tracker
-from roughgas.statistics.errors import stderr_over_seeds
-from roughgas.statistics.estimates import Estimate
+from roughgas.statistics.estimates import Estimate, mean_by_scatter
 
 FLOW_SAMPLES = 10
 """Flow samples in a measurement of the planned length."""
@@ -112,7 +111,7 @@ class FlowTracker(Tracker):
         shifts = np.array([shift for taken, shift in self.shifts() if taken > first])
         if not len(shifts):
             return Estimate(math.nan, math.nan, 0.0)
-        return Estimate(float(shifts.mean()), stderr_over_seeds(shifts), len(shifts) - 1.0)
+        return mean_by_scatter(shifts)
 
 
 def has_flow(scene: Scene, system: System, experiment: Experiment) -> bool:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.statistics.errors import sum_error
+from roughgas.statistics.errors import stderr_over_seeds, sum_error
 from roughgas.statistics.student import t_probability, t_quantile
 
 ERROR_DIGITS = 2  # significant digits of a standard error
@@ -139,6 +139,11 @@ def mean_with_error(value: np.ndarray, stderr: np.ndarray, dof: np.ndarray) -> E
     """
     error = sum_error(stderr, dof)
     return Estimate(float(value.mean()), float(error.stderr) / len(value), float(error.dof))
+
+
+def mean_by_scatter(values: np.ndarray) -> Estimate:
+    """Return the mean of independent numbers (n,), such as of seeds, with its error by scatter."""
+    return Estimate(float(np.mean(values)), stderr_over_seeds(values), len(values) - 1.0)
 
 
 def decimals_of(stderr: float) -> int:

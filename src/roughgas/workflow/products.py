@@ -10,7 +10,7 @@ from pathlib import Path
 
 from roughgas.base import InputError, files, sorted_json
 from roughgas.config import PAPER
-from roughgas.config.study import PAPERS
+from roughgas.config.study import BEYOND, PAPERS
 from roughgas.config.written_study import root_experiments
 from roughgas.results.crate import project_files
 from roughgas.show import catalogue
@@ -19,7 +19,6 @@ from roughgas.workflow.paths import documents, figure_files, folder_of, with_cop
 from roughgas.workflow.studies import Studies
 from roughgas.workflow.tasks import Tasks
 
-BEYOND = "beyond"
 ARTICLE_FIGURE = "transport_inertia"
 """Figure of a study that the article shows besides the figures of the paper."""
 PRODUCTS = {
@@ -39,6 +38,7 @@ class Products:
         """Store the studies, their tasks, and the swept experiments beyond the paper."""
         self.studies, self.tasks, self.sweeps = studies, tasks, studies.sweeps
         self.beyond = studies.swept(BEYOND)
+        self.of_papers = list(studies.under_heading(PAPERS))
 
     def experiments(self, product: str) -> list[str]:
         """Return the names of the experiments that a product is made of."""
@@ -77,16 +77,14 @@ class Products:
 
         [] if a configuration has no such study.
         """
-        studies = [study.name for study in self.studies.under_heading(PAPERS)]
-        if not studies:
+        if not self.of_papers:
             return []
-        products = [path for study in studies for path in self.studies.products(study)]
+        products = [path for study in self.of_papers for path in self.studies.products(study.name)]
         return [*products, *with_copy(scale, "papers.csv"), *documents(scale, "papers")]
 
     def papers_claims(self, scale: str) -> list[str]:
         """Return the paths of the verdicts on other groups' papers."""
-        studies = self.studies.under_heading(PAPERS)
-        return [path for study in studies for path in study.claims(scale, ".json")]
+        return [path for study in self.of_papers for path in study.claims(scale, ".json")]
 
     def papers_data(self, scale: str) -> list[str]:
         """Return the paths of the reduced datasets of the studies of other groups' papers."""
@@ -94,15 +92,16 @@ class Products:
 
     def papers_texts(self) -> str:
         """Return the paper and the folder of each study of another group's paper, JSON by study."""
-        studies = self.studies.under_heading(PAPERS)
         return sorted_json(
-            {study.name: {"paper": study.study.paper, "folder": study.folder} for study in studies}
+            {
+                study.name: {"paper": study.study.paper, "folder": study.folder}
+                for study in self.of_papers
+            }
         )
 
     def papers_code(self) -> str:
         """Return the fingerprint of the code that tabulates other groups' papers."""
-        folders = [study.folder for study in self.studies.under_heading(PAPERS)]
-        hashes = [code_beside(folder, ["config.yaml"]) for folder in folders]
+        hashes = [code_beside(study.folder, ["config.yaml"]) for study in self.of_papers]
         return " ".join([files.code_of("results.papers"), *hashes])
 
     def numbers_data(self, scale: str, source: Path) -> list[str]:

@@ -1,12 +1,17 @@
 """Figures of any variables of a sweep, a row for each."""
 
+import re
+
 import numpy as np
 import pytest
 from observed_sweep import observed_sweep
 from tests.show.figures.legibility import faults_of_letters
 
 from roughgas.base import InputError
-from roughgas.show.figures import variables
+from roughgas.base.fields import fields_of
+from roughgas.effects import EFFECTS
+from roughgas.effects.species import SpeciesSettings
+from roughgas.show.figures import sweep, variables
 
 SPEEDS = ("kicks.speed", (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1))
 
@@ -93,3 +98,17 @@ def test_other_variables_of_the_sweep_are_drawn_and_unknown_ones_refused():
     for name in ("fest", "side", "n_seeds_of_all"):
         with pytest.raises(InputError, match=f"--of = {name}: must be one of R, fast, squares, "):
             variables.draw(data, [name])
+
+
+def test_units_of_axes_are_those_of_the_settings():
+    """Descriptions of settings end in their unit, such as ", in a/T."."""
+    unit = re.compile(
+        r"(?:, in|^Radius in|^Mass in) (m a\^2/T\^[23]|a/T\^2|a/T|1/T|[aTm])(?![\w/^])"
+    )
+    kinds = [*(kind.settings for kind in EFFECTS.values()), SpeciesSettings]
+    described = {}
+    for field in (field for kind in kinds for field in fields_of(kind)):
+        if found := unit.search(field.description):
+            described.setdefault(field.name, set()).add(found[1])
+    described["spin_power"] = {"m a^2/T^3"}  # whose description has none
+    assert described == {name: {unit} for name, unit in sweep.UNITS_OF_SETTINGS.items()}

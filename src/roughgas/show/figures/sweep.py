@@ -35,6 +35,16 @@ LABELS = {
     "box": "width of the box / $a$",
     "spin_share": panel.SHARE_LABEL,
 }
+UNITS_OF_SETTINGS = (
+    dict.fromkeys(("amplitude", "half_stroke", "radius"), "a")
+    | dict.fromkeys(("period", "interval", "duration"), "T")
+    | dict.fromkeys(("velocity", "speed", "spin_velocity", "reference"), "a/T")
+    | dict.fromkeys(("drag", "spin_drag"), "1/T")
+    | dict.fromkeys(("temperature", "spin_temperature"), "m a^2/T^2")
+    | dict.fromkeys(("power", "spin_power"), "m a^2/T^3")
+    | {"acceleration": "a/T^2", "mass": "m"}
+)
+"""Units of settings that a sweep may vary, by key; effects agree on them."""
 SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
 MARGIN = 0.08  # beside the data, as a share of the axis
 LEGEND_WIDTH = 1.6  # inches, beside the panels
@@ -131,7 +141,7 @@ def with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Ax
     """Return the data with words on the coordinate `over` replaced by their numbers, and the
     horizontal axis."""
     values, predefined = data[over].values, AXES.get(over)
-    label = predefined.label if predefined else LABELS.get(over, over.replace("_", " "))
+    label = predefined.label if predefined else LABELS.get(over) or _label_of_setting(over)
     if values.dtype.kind not in "fiu":
         limits = -0.5, len(values) - 0.5
         numbered = data.assign_coords({over: np.arange(len(values))})
@@ -148,6 +158,11 @@ def with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Ax
         margin = MARGIN * (high - low) or MARGIN * abs(high) or 1.0
         limits = low - margin, high + margin
     return data, panel.Axis(over, label, limits, (low, high) if high > low else limits, logarithmic)
+
+
+def _label_of_setting(name: str) -> str:
+    """Return the label of an axis over a setting: its name in words, and its unit."""
+    return name.replace("_", " ") + _suffix_of(UNITS_OF_SETTINGS.get(name, ""))
 
 
 def label_words(panels: Iterable[Axes], data: xr.Dataset, over: str) -> None:
@@ -431,4 +446,9 @@ def unit_suffix(values: xr.DataArray) -> str:
     """Return the unit of a variable as the end of an axis label, such as " / a"; "" without a
     unit."""
     unit = unit_of(values.attrs)
+    return _suffix_of(unit)
+
+
+def _suffix_of(unit: str) -> str:
+    """Return a unit as the end of an axis label; "" for a pure number."""
     return "" if unit in ("", "1") else f" / ({unit})" if " " in unit else f" / {unit}"
