@@ -30,6 +30,8 @@ DOTTED = ":"
 """Style of the theory of a variable along its own coordinate."""
 THEORY = "_theory"
 """End of the names of variables that hold theory beside a variable."""
+DECADES = 3
+"""Powers of ten above which a vertical axis is logarithmic."""
 MAX_ROWS, MAX_LINES = 5, 10
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
 LETTERS_PER_INCH = 13  # of the title
@@ -106,6 +108,8 @@ def draw(
             else:
                 _draw_over(axes, numeric, name, axis, layout, selection)
                 sweep.label_words([axes], data, layout.over)
+        if _spans_decades(data[name]):
+            row[0].set_yscale("log")  # of the whole row, which shares the axis
         label = name.replace("_", " ")
         row[0].set_ylabel(f"{label}\n{sweep.unit_suffix(data[name])}".rstrip(), fontsize=8)
         legend = row[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
@@ -242,6 +246,12 @@ def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theori
     if "R" in names and "R" not in theories and _has_theory(data):
         beside.append(f"R beside {equation_of(data.attrs).name}")
     return ", ".join([f"{text} over {sweep.name_of_axis(over)}", *beside])
+
+
+def _spans_decades(values: xr.DataArray) -> bool:
+    """Return whether values are positive and span more than DECADES."""
+    low, high = float(values.min()), float(values.max())
+    return 0.0 < low < high * 10.0**-DECADES
 
 
 def _has_theory(data: xr.Dataset) -> bool:
