@@ -299,7 +299,8 @@ def opened(path: str | Path, *file_types: str) -> Iterator["netCDF4.Dataset"]:
     checksum, and decoded. Raises InputError for files of other programs, types and versions, for
     truncated files, for files of more than MAX_BYTES, on disk or by their dimensions, and for files
     that HDF5 does not open within OPENING_TIMEOUT; DamagedError for a wrong checksum, unless
-    another process holds the file; OSError where it cannot be read.
+    another process holds the file; OSError where it cannot be read. Damage that the checksum cannot
+    prove, in a file without it or with a forged one, may crash HDF5, and the process with it.
     """
     file_path = Path(path)
     if not file_path.exists():
