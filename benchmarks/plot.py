@@ -7,8 +7,10 @@ from matplotlib.figure import Figure
 
 from benchmarks.kernel import Timing
 from benchmarks.yardstick import Rate
-from roughgas.kernel.layout import SWEEP_LIMIT
+from roughgas.kernel.scheme import break_even
 from roughgas.show.style import FAINT, LINE_STYLES, PARAMETERS, THEORY, WIDTH, save
+
+TYPICAL_PACKING = 0.1  # of the scenes
 
 
 def draw(timings: list[Timing], yardstick: list[Rate], output: Path) -> None:
@@ -32,13 +34,15 @@ def draw(timings: list[Timing], yardstick: list[Rate], output: Path) -> None:
         axes.plot(
             *zip(*line, strict=True), color=THEORY, marker="x", label="plain loop (yardstick)"
         )
-        axes.axvline(SWEEP_LIMIT, color=FAINT, linewidth=0.8)
+        # axes are logarithmic: one line for packings of .05 to .2
+        few = break_even(2, TYPICAL_PACKING)
+        axes.axvline(few, color=FAINT, linewidth=0.8)
         axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
         axes.set_ylabel("CPU time per collision (µs)")
         for side, label in (("right", "all pairs "), ("left", " cells")):
             axes.annotate(
                 label,
-                (SWEEP_LIMIT, 0.02),
+                (few, 0.02),
                 xycoords=("data", "axes fraction"),
                 ha=side,
                 color=FAINT,

@@ -6,6 +6,7 @@ import pytest
 from raw import build, protocols
 
 from roughgas.config import WrittenExperiment
+from roughgas.kernel.scheme import LISTS
 
 RUBBER = {"restitution": "particles", "roughness": "particles"}
 STRIPES = {
@@ -36,7 +37,7 @@ def test_gamma_and_f_star_follow_from_the_floor():
     assert falls / math.sqrt(2.0) / floor.period == pytest.approx(0.44)
     assert experiment["effects"]["floor"]["wave"] == "sine"
     assert experiment["box"] == [20, 20, "open"]
-    assert build(experiment, 0.7, 0.35).lists
+    assert build(experiment, 0.7, 0.35).scheme == LISTS
     period = floor.period
     lengths = [experiment["schedule"][key] for key in ("equilibrate", "measure", "sample_every")]
     assert lengths == pytest.approx([40 * period, 8 * period, period / 32])

@@ -5,6 +5,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
+import schemes
 from brute_force import run, scene_of, settings
 from compiled import from_python
 from exact import exactly, segment
@@ -12,7 +13,6 @@ from slow_cases import slow_but
 
 from roughgas.effects import drives
 from roughgas.effects.drives import Shear
-from roughgas.kernel import layout
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BASE
 
@@ -24,8 +24,7 @@ phase = from_python(drives.offset)
 @pytest.fixture(params=["swept", "in cells"])
 def scheme(request, monkeypatch):
     """Find contacts by either of the two schemes, however few the particles are."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 0 if request.param == "in cells" else 700)
-    monkeypatch.setattr(layout, "PER_CELL", {2: 0.0, 3: 0.0})
+    schemes.use(monkeypatch, "cells" if request.param == "in cells" else "sweep", per_cell=0.0)
     return request.param
 
 

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import schemes
 from brute_force import begin, largest_overlap, run, scene_of, settings
 
 from roughgas.effects.species import UNIFORM
-from roughgas.kernel import layout
+from roughgas.kernel.scheme import MIN_CELLS
 from roughgas.kernel.state import COLLISIONS
 from roughgas.simulation.energy_balance import balance
 
@@ -66,9 +67,9 @@ def test_a_lone_large_particle_meets_all_small_ones(margins, monkeypatch):
     """In full among a million, so that a cell has a thousand particles."""
     number = margins.size(1500, 1_000_000)
     side = 4.0 * math.sqrt(number)
-    radius = min(side / (2.1 * layout.MIN_CELLS), 20.0)
+    radius = min(side / (2.1 * MIN_CELLS), 20.0)
     species = [{"number": 1, "radius": radius}, {"number": number}]
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 160)
+    schemes.use(monkeypatch, "cells")
     state = check_gas(margins, number + 1, [side, side], species, 2000)
     assert state.cells is not None
     largest_cell = np.bincount(state.cells.home, minlength=len(state.cells.first)).max()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import schemes
 from brute_force import Comparison, begin, run, scene_of, settings, snapshot
 from slow_cases import slow_but
 
@@ -51,8 +52,7 @@ def sheared_or_slow(cases):
 @pytest.fixture
 def smallest_cells(monkeypatch):
     """Sort particles into the smallest possible cells, however few they are."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 0)
-    monkeypatch.setattr(layout, "PER_CELL", {2: 0.0, 3: 0.0})
+    schemes.use_smallest_cells(monkeypatch)
 
 
 @pytest.mark.parametrize("case", sheared_or_slow(CASES))
@@ -89,11 +89,11 @@ LARGE_GASES = {
 @pytest.mark.parametrize("name", sheared_or_slow(LARGE_GASES))
 def test_both_schemes_make_the_same_collisions(name, monkeypatch):
     """The same 2,000 pairs in the same order; later, chaos amplifies roundings of the clock."""
-    states = []
-    for largest_swept in (0, 10_000):
-        monkeypatch.setattr(layout, "SWEEP_LIMIT", largest_swept)
-        scene, state = begin(*LARGE_GASES[name], 3)
-        states.append(state)
+    schemes.use(monkeypatch, "cells")
+    experiment, r, beta = LARGE_GASES[name]
+    _, many = begin(experiment, r, beta, 3)
+    scene, few = begin(experiment | {"neighbours": "sweep"}, r, beta, 3)
+    states = [many, few]
     assert states[0].cells is not None and states[1].cells is None
     for _ in range(500 if "species" in name else 2000):  # light particles are fast
         pairs = []
@@ -110,7 +110,7 @@ def test_both_schemes_make_the_same_collisions(name, monkeypatch):
 @pytest.fixture
 def with_cells(monkeypatch):
     """Sort particles into cells, however few they are."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 0)
+    schemes.use(monkeypatch, "cells")
 
 
 @pytest.mark.slow

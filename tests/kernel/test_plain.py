@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+import schemes
 from brute_force import begin, settings
 from brute_force.scenes import RARE, kernels
 from compiled import from_python
@@ -16,7 +17,7 @@ from roughgas.compiling.jit import jit
 from roughgas.effects import Effects
 from roughgas.effects.gravity import Gravity
 from roughgas.effects.settings import register
-from roughgas.kernel import hooks, layout
+from roughgas.kernel import hooks
 from roughgas.kernel.hooks import active
 from roughgas.kernel.record import Sampling, allocate_frames, columns, record
 
@@ -95,8 +96,7 @@ def test_lists_run_as_plain_python(monkeypatch):
 
 def run_in_cells(kernel, monkeypatch, **changes):
     """Compare both on ten particles that are sorted into cells."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 0)
-    monkeypatch.setattr(layout, "PER_CELL", {2: 0.0, 3: 0.0})
+    schemes.use_smallest_cells(monkeypatch)
     box = [17, *settings(kernel)["box"][1:]]
     box[1:] = [length if length == "open" else 17 for length in box[1:]]
     assert_plain_python_has_the_same_bits(settings(kernel, 10, box) | changes, collisions=10)

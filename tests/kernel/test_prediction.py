@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+import schemes
 from brute_force import BruteForce, begin, run, scene_of, settings, snapshot
 from compiled import from_python
 from slow_cases import slow_but
 
-from roughgas.kernel import event_lists, layout
+from roughgas.kernel import event_lists
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, NOW, TYPICAL_SPEED
 
@@ -143,16 +144,16 @@ earliest, enter_in_queue, clear_calendar = map(
 )
 
 
-@pytest.mark.parametrize("largest_swept", [0, 10_000])
+@pytest.mark.parametrize("scheme", ["cells", "sweep"])
 @pytest.mark.parametrize("spread", slow_but([1.0], [1e-3, 1.0, 1e6]))
-def test_the_queue_returns_the_earliest_event(largest_swept, spread, monkeypatch):
+def test_the_queue_returns_the_earliest_event(scheme, spread, monkeypatch):
     """Times within a day of the calendar, over a year and over many years; some coincide, some are
     infinite."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", largest_swept)
+    schemes.use(monkeypatch, scheme)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     rng = np.random.default_rng(0)
     state.clock[TYPICAL_SPEED] = 1.0
-    if largest_swept == 0:
+    if scheme == "cells":
         clear_calendar(state)
     expected = np.full(300, np.inf)
     for step in range(2000):
@@ -168,8 +169,8 @@ def test_the_queue_returns_the_earliest_event(largest_swept, spread, monkeypatch
             assert state.agenda.key[earliest(state)] == expected.min()
 
 
-@pytest.mark.parametrize("largest_swept", [0, 10_000])
-def test_a_queue_without_events_returns_infinity(largest_swept, monkeypatch):
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", largest_swept)
+@pytest.mark.parametrize("scheme", ["cells", "sweep"])
+def test_a_queue_without_events_returns_infinity(scheme, monkeypatch):
+    schemes.use(monkeypatch, scheme)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     assert state.agenda.key[earliest(state)] == np.inf

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import schemes
 import xarray as xr
 from brute_force import KERNELS, kernels, settings
 from raw import build, run_point
@@ -9,7 +10,6 @@ from schedules import COOLING
 
 from roughgas.base import InputError
 from roughgas.data.point import as_dataset
-from roughgas.kernel import layout
 from roughgas.simulation.saved_states import initial_states_of
 
 R, BETA, SEED = 0.9, 0.3, 3
@@ -87,8 +87,7 @@ SLOW_KERNELS = [pytest.param(name, marks=pytest.mark.slow) for name in ("gas", "
 @pytest.mark.parametrize("name", ["sheared", *SLOW_KERNELS])
 def test_many_particles_go_on_in_their_cells(name, monkeypatch):
     """Here of few particles; a bed keeps the cells of its initial state."""
-    monkeypatch.setattr(layout, "SWEEP_LIMIT", 0)
-    monkeypatch.setattr(layout, "PER_CELL", {2: 0.0, 3: 0.0})
+    schemes.use_smallest_cells(monkeypatch)
     box = {"walled": [20, "open"], "spheres": [17, 17, 17]}.get(name, [17, 19])
     experiment = settings(name, 40, box) | {"keep_state": True}
     length = cooling if name in ("gas", "spheres") else steady

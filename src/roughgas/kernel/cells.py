@@ -11,9 +11,9 @@ particles a period away are candidates, and never met. Under shear each row of c
 mean flow, row k of n by about (k + 1/2)/n - 1/2 of the image shift: rows slide past each other
 slowly, and past the images no faster.
 
-In a dense layer (Scene.lists) a particle collides with its neighbours many times before any of them
-moves away. There each particle has a neighbour list. It is assigned a region, a few tenths of a
-radius wide, and its list has all particles with regions so near that the two may meet while both
+In a dense layer a particle collides with its neighbours many times before any of them moves away.
+With the scheme LISTS each particle has a neighbour list. It is assigned a region, a few tenths of
+a radius wide, and its list has all particles with regions so near that the two may meet while both
 are inside. A particle that leaves its region gets a new one centred on it, and the neighbour lists
 concerned are updated. All regions move with the mean velocity of the layer, so that particles that
 fly together stay in theirs. Cells then contain the centres of the regions.

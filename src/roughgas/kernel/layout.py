@@ -1,10 +1,11 @@
-"""Memory layout of a State, and choice between sweep and cells."""
+"""Memory layout of a State."""
 
 import math
 
 import numpy as np
 
 from roughgas.kernel import hooks
+from roughgas.kernel.scheme import LISTS, cell_grid, density_of, is_swept
 from roughgas.kernel.state import (
     COUNTS,
     NOBODY,
@@ -23,7 +24,6 @@ from roughgas.kernel.state import (
     Sweep,
 )
 
-SWEEP_LIMIT = 500  # maximum number of particles for the sweep: see docs/performance.md
 LANES = 16  # arrays for the sweep are padded to multiples of this: whole vector registers
 BLOCK = 16  # particles in a block of the queue; divides LANES
 BATCH = 8  # candidates whose contacts are predicted at once
@@ -32,11 +32,8 @@ CACHE_LINE = 64  # bytes
 MIN_CELL_WIDTH = 2.002  # over the largest radius: a diameter, and a margin for rounding
 BODY_FIELDS = {"radius": (float,), "mass": (float,), "inertia": (float,), "species": (np.int32,)}
 TIMES_OF = "moment of "  # before the name of an effect: its array of particle_times
-PER_CELL = {2: 0.6, 3: 0.4}  # dimension -> particles in a cell, where cells are wide enough
-LAYER_COMPRESSION = 4.0  # density where most contacts in a layer occur, over the initial density
 SKIN = 0.45  # sides of the regions of neighbour lists, in a: cells are wider by as much
 LIST_CAPACITY = 16  # neighbours on a particle's list, which then fills one cache line
-MIN_CELLS = 8  # along an axis: with fewer, particles would be met twice
 
 
 def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, bodies=None):
@@ -45,20 +42,22 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     Positions (N, D) are in particle radii a, velocities (N, D) and spins (N, 2 D - 3), which are
     surface velocities, in a/T. `precision` is the type of trajectories and spins. Effects that draw
     random numbers start from the numpy generator `rng`, by default with a fixed seed. A scene
-    without spin ignores the spins; a scene with several species needs the Bodies. More than
-    SWEEP_LIMIT particles are sorted into cells if the box has room for MIN_CELLS along each axis.
+    without spin ignores the spins; a scene with several species needs the Bodies. `is_swept`
+    decides between sweep and cells.
 
     Particles are stored in the order of their positions: their order in memory decides between
     simultaneous events, and results must not depend on how the particles were numbered.
     """
     number, dimension = position.shape
     narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
-    width, is_swept = narrowest + (SKIN if scene.lists else 0.0), number <= SWEEP_LIMIT
-    grid = () if is_swept else cell_grid(scene, position, width)
-    if is_swept or min(grid[0]) < MIN_CELLS:
+    radii = np.ones(number) if bodies is None else bodies.radius
+    width = narrowest + (SKIN if scene.scheme == LISTS else 0.0)
+    density = density_of(scene, position, radii, width)
+    grid = cell_grid(scene, density, width)
+    if is_swept(scene, number, density.packing, grid):
         state = _swept_state(scene, number, dimension, precision)
     else:
-        state = _celled_state(scene, number, dimension, precision, *grid, narrowest)
+        state = _celled_state(scene, number, dimension, precision, grid, narrowest)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -82,25 +81,6 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     state.agenda.kind[:] = NOTHING
     state.clock[SPAN] = 1.0
     return state
-
-
-def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH):
-    """Return numbers and widths of cells along each axis, for PER_CELL particles in a cell or more.
-
-    `position` (N, D) is in particle radii a, as are the widths. No cell is narrower than
-    `narrowest`. Along an open axis the cells fill the initial height of the gas.
-    """
-    heights = np.ptp(position, axis=0) + narrowest
-    lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
-    density = (
-        len(position) / math.prod(lengths) * (LAYER_COMPRESSION if scene.box[-1] is None else 1.0)
-    )
-    volume = PER_CELL[len(lengths)] / density
-    min_width = max(narrowest, volume ** (1.0 / len(lengths)))
-    min_counts = [MIN_CELLS if length is None else 1 for length in scene.box]
-    lengths = [max(length, n * min_width) for length, n in zip(lengths, min_counts, strict=True)]
-    counts = tuple(max(1, math.floor(length / min_width)) for length in lengths)
-    return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
 
 
 def _swept_state(scene, number, dimension, precision):
@@ -127,12 +107,13 @@ def _swept_state(scene, number, dimension, precision):
     )
 
 
-def _celled_state(scene, number, dimension, precision, counts, widths, narrowest):
+def _celled_state(scene, number, dimension, precision, grid, narrowest):
     """Return an empty state with cells: a cache line for each particle's path, one for its events.
 
-    `counts` and `widths` describe the cells along each axis; `narrowest` is the minimum of the
-    widths without room for the regions of neighbour lists.
+    `grid` is the Grid of the cells; `narrowest` is the minimum of their widths without room for the
+    regions of neighbour lists.
     """
+    counts, widths = grid
     fields = _fields(scene, dimension, precision, CELL_SLOTS)
     fields |= {name: (np.int32,) for name in ("home", "following", "later")}
     fields |= {"leave": (float,), "heading": (np.int8,)}
@@ -170,7 +151,7 @@ def _celled_state(scene, number, dimension, precision, counts, widths, narrowest
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
             first=np.full(math.prod(counts), NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave", "heading")},
-            neighbours=_neighbours(number, widths, narrowest) if scene.lists else None,
+            neighbours=_neighbours(number, widths, narrowest) if scene.scheme == LISTS else None,
         ),
     )
 

@@ -25,6 +25,7 @@ from roughgas.effects.settings import SceneContext
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.effects.walls import Floor, Wall
 from roughgas.kernel import hooks
+from roughgas.kernel.scheme import CHEAPEST, LISTS, SCHEMES
 from roughgas.kernel.state import Bodies
 from roughgas.scene.settings import SceneSettings
 
@@ -97,7 +98,6 @@ DIAMETER = 2.0
 MIN_PERIOD = 4.01
 MIN_CHANNEL_WIDTH = 2.01  # between side walls, in a
 MAX_SIDE = 1e9  # of a box, in a: a product of three sides can still be squared
-CELLS, LISTS = "cells", "lists"  # legal values of `neighbours`
 MIN_EXTENT = 8.0  # of an axis closed by walls, in a: without images it need not limit horizons
 
 
@@ -110,7 +110,7 @@ class Scene(NamedTuple):
     effects: Effects
     extent: float  # minimum of the box's periods and widths, in a
     middle: float  # height at which the mean flow vanishes, in a
-    lists: bool = False  # whether many particles have neighbour lists
+    scheme: int = CHEAPEST  # how candidates for contacts are found, as in kernel/scheme.py
 
 
 def shear_rate(scene: Scene) -> float:
@@ -150,16 +150,17 @@ def build(experiment: SceneSettings, r: float, beta: float) -> Scene:
         effects=effects,
         extent=min(extents),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
-        lists=_keeps_lists(experiment, effects),
+        scheme=_scheme(experiment, effects),
     )
 
 
-def _keeps_lists(experiment, effects):
-    """Return whether particles have neighbour lists; raise InputError for lists under shear."""
-    chosen = experiment.neighbours
+def _scheme(experiment, effects):
+    """Return the scheme that finds candidates; raise InputError for lists under shear."""
+    chosen = SCHEMES.index(experiment.neighbours)
     if chosen == LISTS and effects.shear is not None:
-        raise InputError("neighbours", chosen, f"be {CELLS} where images slide past each other")
-    return chosen == LISTS
+        legal = "be cheapest, sweep or cells where images slide past each other"
+        raise InputError("neighbours", experiment.neighbours, legal)
+    return chosen
 
 
 def elastic(scene: Scene) -> Scene:

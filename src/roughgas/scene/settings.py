@@ -29,11 +29,13 @@ Box = Annotated[
     numbers(2, 3, "Lengths of the box in a, the last one vertical; `open` means no upper end."),
 ]
 Neighbours = Annotated[
-    Literal["cells", "lists"],
+    Literal["cheapest", "sweep", "cells", "lists"],
     described(
-        "How possible contacts of more than 500 particles are found: in `cells`, or on neighbour "
-        "`lists`, which are faster where particles are close together and move little between "
-        "contacts, as in a `layer`, and slower elsewhere. Paths differ by rounding errors alone."
+        "How possible contacts are found: by a `sweep` over all particles; in `cells`; on "
+        "neighbour `lists`, which are faster where particles are close together and move little "
+        "between contacts, as in a `layer`, and slower elsewhere; or by the `cheapest` of sweep "
+        "and cells, which the number of particles and the packing decide. A box without room for "
+        "eight cells along each axis is swept. Paths differ by rounding errors alone."
     ),
 ]
 SpinTemperature = Annotated[
@@ -54,7 +56,7 @@ class SceneSettings(Settings, frozen=True, kw_only=True, forbid_unknown_fields=F
     """Settings of the active effects by name; structs, after they have been read."""
     species: tuple[SpeciesSettings, ...] = ()
     species_pairs: tuple[PairSettings, ...] = ()
-    neighbours: Neighbours = "cells"
+    neighbours: Neighbours = "cheapest"
     spin_temperature: SpinTemperature = 0.0
 
     @property

@@ -1,0 +1,133 @@
+"""Costs of both schemes for candidates of contacts, and the numbers up to which a sweep costs less.
+
+    python -m benchmarks.schemes
+    python -m benchmarks.schemes --dimensions 3 --packings .2 --numbers 300 600 --ratios 1 5
+
+Prints a row for each gas: contacts per second of CPU time by the sweep and in cells, each relative
+to the faster, and the scheme that the kernel chooses; then the break-even numbers for BREAK_EVEN of
+kernel/scheme.py. The schemes run in turns, from the same state of a smooth elastic gas. At a ratio
+of radii other than 1 half of the particles are large.
+"""
+
+import argparse
+import math
+import statistics
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.scenes import advance, present
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.scheme import CELLS, CHEAPEST, SWEEP
+from roughgas.kernel.state import COLLISIONS, State
+from roughgas.scene import Scene, build
+from roughgas.scene.initial import initial_state
+from roughgas.scene.settings import scene_settings
+
+PACKINGS = (0.001, 0.01, 0.05, 0.2, 0.5)
+NUMBERS = (300, 600, 1000, 3000, 10_000)
+RATIOS = (1.0,)
+DIMENSIONS = (2, 3)
+TURNS, SECONDS = 5, 0.2  # of CPU time for a turn of a scheme
+SETTLING = 3  # contacts per particle, before
+TOLERANCE = 1.1  # of the chosen scheme's cost over the cheaper scheme's
+
+
+class Gas(NamedTuple):
+    """A smooth elastic gas in a periodic box; half of its particles are larger by `ratio`."""
+
+    dimension: int
+    packing: float
+    number: int
+    ratio: float
+
+    def scene(self):
+        """Return scene and settings of the gas."""
+        mean_volume = 0.5 * (1.0 + self.ratio**self.dimension)
+        unit_sphere = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
+        side = (self.number * unit_sphere * mean_volume / self.packing) ** (1.0 / self.dimension)
+        raw = {
+            "particles": self.number,
+            "box": [side] * self.dimension,
+            "effects": {"spin": {"inertia": 0.4}},
+        }
+        if self.ratio != 1.0:
+            raw["species"] = [{"fraction": 0.5}, {"fraction": 0.5, "radius": self.ratio}]
+        settings = scene_settings(raw)
+        return build(settings, 1.0, -1.0), settings
+
+
+def main() -> None:
+    """Print the table of costs, and the break-even numbers."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--dimensions", type=int, nargs="+", default=DIMENSIONS)
+    parser.add_argument("--packings", type=float, nargs="+", default=PACKINGS)
+    parser.add_argument("--numbers", type=int, nargs="+", default=NUMBERS)
+    parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS)
+    options = parser.parse_args()
+    print("| D | ratio | packing | N | sweep | cells | chosen | its cost |\n|" + " --- |" * 8)
+    break_evens, worst = [], 0.0
+    for dimension in options.dimensions:
+        for ratio in options.ratios:
+            for packing in options.packings:
+                costs = {}
+                for number in options.numbers:
+                    sweep, cells, chosen = measure(Gas(dimension, packing, number, ratio))
+                    costs[number] = cells / sweep
+                    excess = (sweep if chosen == SWEEP else cells) / min(sweep, cells)
+                    worst = max(worst, excess)
+                    name = "sweep" if chosen == SWEEP else "cells"
+                    print(
+                        f"| {dimension} | {ratio:g} | {packing:g} | {number:,} | {1 / sweep:.3g} "
+                        f"| {1 / cells:.3g} | {name} | {excess:.2f} |",
+                        flush=True,
+                    )
+                break_evens.append((dimension, ratio, packing, break_even_of(costs)))
+    print("\n| D | ratio | packing | a sweep costs less up to N |\n|" + " --- |" * 4)
+    for row in break_evens:
+        print("| " + " | ".join(f"{entry:.3g}" for entry in row) + " |")
+    print(f"\nThe chosen scheme costs at most {worst:.2f} of the cheaper; limit {TOLERANCE}.")
+
+
+def measure(gas: Gas) -> tuple[float, float, int]:
+    """Return median CPU seconds per contact of the sweep and of cells, and the chosen scheme."""
+    scene, settings = gas.scene()
+    state = initial_state(scene, settings, np.random.default_rng(1))
+    advance(scene, state, collisions=SETTLING * gas.number)
+    rows = rows_of(scene, state)
+    states = [
+        new_state(scene._replace(scheme=forced), *rows[:3], bodies=rows[3])
+        for forced in (SWEEP, CELLS)
+    ]
+    costs = [[cost(scene, variant) for variant in states] for _ in range(TURNS + 1)][1:]
+    default = new_state(scene._replace(scheme=CHEAPEST), *rows[:3], bodies=rows[3])
+    sweep, cells = (statistics.median(column) for column in zip(*costs, strict=True))
+    return sweep, cells, SWEEP if default.cells is None else CELLS
+
+
+def rows_of(scene: Scene, state: State):
+    """Return positions, velocities, spins and bodies of all particles, at the present."""
+    return *present(scene, state), state.bodies
+
+
+def cost(scene: Scene, state: State) -> float:
+    """Return the CPU seconds per contact over SECONDS of CPU time."""
+    before, begin = int(state.counts[COLLISIONS]), time.process_time()
+    while (elapsed := time.process_time() - begin) < SECONDS:
+        advance(scene, state, collisions=max(len(state.changes) // 4, 1000))
+    return elapsed / (int(state.counts[COLLISIONS]) - before)
+
+
+def break_even_of(costs: dict[int, float]) -> float:
+    """Return N where the cost of cells over that of the sweep passes 1, on logarithmic scales.
+
+    The costs are fitted by a straight line, weighted towards 1.
+    """
+    numbers, ratios = np.log(list(costs)), np.log(list(costs.values()))
+    slope, value = np.polyfit(numbers, ratios, 1, w=1.0 / (0.2 + abs(ratios)))
+    return math.exp(-value / slope)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""Choice between the two schemes that find candidates for contacts: a sweep over all, and cells.
+
+The cost of a sweep grows with the number of particles, the cost of cells does not, but in a dilute
+gas particles cross many cells between contacts. The break-even numbers are measured by
+`python -m benchmarks.schemes`. They are the same on all machines, so that results are, too.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+SCHEMES = ("cheapest", "sweep", "cells", "lists")  # legal values of the setting `neighbours`
+CHEAPEST, SWEEP, CELLS, LISTS = range(4)  # their indices: values of Scene.scheme
+MIN_CELLS = 8  # along an axis: with fewer, particles would be met twice
+LAYER_COMPRESSION = 4.0  # density where most contacts in a layer occur, over the initial density
+BREAK_EVEN = {  # dimension -> packing fractions, and the N up to which a sweep costs less
+    2: ((0.001, 0.01, 0.05, 0.2, 0.5), (2500, 1600, 1050, 500, 270)),
+    3: ((0.001, 0.01, 0.05, 0.2, 0.5), (2600, 1400, 800, 500, 320)),
+}
+BED_PACKING = 0.2  # for this choice, of a gas with an open top: dense below, dilute above
+# Particles in a cell, where cells are wide enough: a minimum, from the packing DENSE on, and a
+# maximum in dilute gases, where cells of more particles are crossed less often.
+PER_CELL = {2: (0.6, 3.0), 3: (0.4, 1.0)}
+DENSE, GROWTH = 0.05, 0.75  # the number grows as this power of DENSE over the packing
+
+
+class Grid(NamedTuple):
+    """Numbers and widths (in a) of cells along each axis."""
+
+    counts: tuple[int, ...]
+    widths: tuple[float, ...]
+
+
+class Density(NamedTuple):
+    """Density of a gas where most of its contacts occur."""
+
+    lengths: tuple[float, ...]  # of the gas along each axis, in a
+    number: float  # of particles in a^D
+    packing: float  # fraction of the volume that the particles fill
+
+
+def density_of(scene, position, radii, narrowest):
+    """Return the Density of particles at `position` (N, D) with `radii` (N,), in particle radii a.
+
+    Along an axis without a period the gas ends half of `narrowest` (a) beyond its outermost
+    particles.
+    """
+    dimension, heights = len(scene.box), np.ptp(position, axis=0) + narrowest
+    lengths = tuple(length or height for length, height in zip(scene.box, heights, strict=True))
+    compression = LAYER_COMPRESSION if scene.box[-1] is None else 1.0
+    number = len(radii) / math.prod(lengths) * compression
+    unit_sphere = math.pi if dimension == 2 else 4.0 * math.pi / 3.0
+    return Density(lengths, number, float(number * unit_sphere * np.mean(radii**dimension)))
+
+
+def is_swept(scene, number, packing, grid):
+    """Return whether candidates for contacts are found by a sweep over all `number` particles.
+
+    `packing` is as in Density, `grid` the Grid of the cells. A box without room for MIN_CELLS along
+    each axis is always swept.
+    """
+    if scene.scheme == SWEEP or min(grid.counts) < MIN_CELLS:
+        return True
+    packing = BED_PACKING if scene.box[-1] is None else packing
+    return scene.scheme == CHEAPEST and number <= break_even(len(scene.box), packing)
+
+
+def break_even(dimension, packing):
+    """Return the number of particles up to which a sweep costs less than cells.
+
+    The number is interpolated between the packing fractions of BREAK_EVEN, on logarithmic scales.
+    """
+    packings, numbers = np.log(BREAK_EVEN[dimension])
+    return round(math.exp(np.interp(math.log(packing), packings, numbers)))
+
+
+def particles_per_cell(dimension, packing):
+    """Return the number of particles in a cell, where cells are wide enough."""
+    fewest, most = PER_CELL[dimension]
+    return min(most, fewest * max(1.0, (DENSE / packing) ** GROWTH))
+
+
+def cell_grid(scene, density, narrowest):
+    """Return the Grid of cells for a gas of a Density, with `particles_per_cell` or more.
+
+    No cell is narrower than `narrowest` (a). A cell holds fewer particles where the box else had no
+    room for MIN_CELLS. Along an open axis the cells fill the initial height of the gas.
+    """
+    dimension = len(scene.box)
+    volume = particles_per_cell(dimension, density.packing) / density.number
+    width = max(narrowest, volume ** (1.0 / dimension))
+    lengths = [
+        max(length, MIN_CELLS * width) if period is None else length
+        for period, length in zip(scene.box, density.lengths, strict=True)
+    ]
+    widths = [max(narrowest, min(width, length / MIN_CELLS)) for length in lengths]
+    counts = tuple(
+        max(1, math.floor(length / width)) for length, width in zip(lengths, widths, strict=True)
+    )
+    return Grid(counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True)))
