@@ -158,10 +158,10 @@ def test_every_particle_is_listed_once_in_its_cell_and_on_its_day(with_cells):
     }
 
 
-@pytest.mark.parametrize("skin", [layout.SKIN, 4.0])  # lists of such a wide skin overflow
+@pytest.mark.parametrize("skin", [layout.BED_SKIN, 4.0])  # lists of such a wide skin overflow
 def test_neighbour_lists_have_all_regions_within_reach(skin, with_cells, monkeypatch):
     """By the distances between all regions; lists that overflow are left out."""
-    monkeypatch.setattr(layout, "SKIN", skin)
+    monkeypatch.setattr(layout, "BED_SKIN", skin)
     scene, state = begin(*LARGE_GASES["walled, on lists"], 6)
     full_lists = 0
     for _ in range(20):

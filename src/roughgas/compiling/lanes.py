@@ -61,6 +61,15 @@ def gather(array, column, rows):
 
 
 @Primitive
+def gather_rows(array, rows, pattern):
+    """Return array[row, k] for each lane, for as many columns k from 0 on as `pattern` has items.
+
+    `array` (N, columns) is of floats; single precision is widened.
+    """
+    return tuple(gather(array, k, rows) for k in range(len(pattern)))
+
+
+@Primitive
 def iota(count):
     """Return the lanes 0.0, 1.0, 2.0, ..."""
     return np.arange(float(count))

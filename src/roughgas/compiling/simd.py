@@ -254,6 +254,71 @@ def gather(lowering, array, column, rows):
     return lowering.joined(values)
 
 
+@operation(lambda array, rows, pattern: types.UniTuple(_doubles(rows), pattern.count))
+def gather_rows(lowering, array, rows, pattern):
+    """Whole rows are loaded, and transposed in registers: there are fewer loads than numbers."""
+    gathered = lowering.result_type
+    columns = [
+        column
+        for first in range(0, gathered.count, rows.type.count)
+        for column in _gather_columns(lowering, array, rows, first)
+    ]
+    return lowering.context.make_tuple(lowering.builder, gathered, columns[: gathered.count])
+
+
+def _doubles(lanes):
+    return Lanes(types.float64, lanes.count)
+
+
+def _gather_columns(lowering, array, rows, first):
+    """Return columns of rows of an array, as many as there are lanes, from column `first` on.
+
+    Columns beyond the gathered ones are undefined.
+    """
+    builder, lanes = lowering.builder, lowering.result_type.dtype.count
+    element = lowering.context.get_value_type(lowering.argument_types[0].dtype)
+    vector, doubles = ir.VectorType(element, lanes), ir.VectorType(ir.DoubleType(), lanes)
+    mask = _constants([first + k < lowering.result_type.count for k in range(lanes)], BIT)
+    loaded = []
+    for k in range(lanes):
+        row = builder.zext(builder.extract_element(rows, NUMBER(k)), WORD)
+        pointer = lowering.pointer(array, [row, WORD(first)], vector)
+        loaded.append(_masked_load(lowering, pointer, mask, vector))
+    if element != ir.DoubleType():
+        loaded = [builder.fpext(values, doubles) for values in loaded]
+    return _transposed(builder, loaded)
+
+
+def _masked_load(lowering, pointer, mask, vector):
+    """Return the items at an address whose lanes are set in the mask; the others are not read."""
+    name = f"llvm.masked.load.v{vector.count}{vector.element.intrinsic_name}.p0"
+    module = lowering.builder.module
+    function = module.globals.get(name)
+    if function is None:
+        signature = [vector.as_pointer(), NUMBER, mask.type, vector]
+        function = ir.Function(module, ir.FunctionType(vector, signature), name)
+    size = 8 if vector.element == ir.DoubleType() else 4
+    nothing = ir.Constant(vector, ir.Undefined)
+    return lowering.builder.call(function, [pointer, NUMBER(size), mask, nothing])
+
+
+def _transposed(builder, rows):
+    """Return the columns of a square of numbers from its rows, each in lanes."""
+    count, step = len(rows), 1
+    while step < count:
+        # exchanges the off-diagonal quarters of each square of 2 step by 2 step numbers
+        lower = [k if not k & step else count + k - step for k in range(count)]
+        upper = [k + step if not k & step else count + k for k in range(count)]
+        exchanged = list(rows)
+        for i in range(count):
+            if not i & step:
+                pair = rows[i], rows[i + step]
+                exchanged[i] = builder.shuffle_vector(*pair, _constants(lower))
+                exchanged[i + step] = builder.shuffle_vector(*pair, _constants(upper))
+        rows, step = exchanged, 2 * step
+    return rows
+
+
 @operation(lambda array, row: types.none)
 def prefetch(lowering, array, row):
     pointer = lowering.pointer(

@@ -30,7 +30,7 @@ from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import (
     assume_nonnegative,
     bits,
-    gather,
+    gather_rows,
     iota,
     lanes_of,
     larger,
@@ -477,9 +477,7 @@ def _list_neighbours(state, scene, i, begin, end):
     lanes = lanes_of(state.shortlist.when)
     for first in range(begin, number, lanes):
         particles = load_scalars(candidates, first, lanes)
-        x = tuple(
-            gather(neighbours.middle, k, particles) - middle[k] for k in range(len(scene.box))
-        )
+        x = subtract(gather_rows(neighbours.middle, particles, scene.box), middle)
         x, _ = shifted(x, x, image_numbers(x, scene.box, None), scene.box, None)
         gap = tuple(larger(abs(x[k]) - neighbours.sides[k], 0.0) for k in range(len(scene.box)))
         near = bits((dot(gap, gap) < distance * distance) & (iota(lanes) < number - first))
@@ -511,11 +509,12 @@ def _remove_neighbour(neighbours, i, j):
     count, members = neighbours.number[i], neighbours.members
     if count > LIST_CAPACITY:
         return
-    for k in range(count):
-        if members[i, k] == j:
-            members[i, k] = members[i, count - 1]
-            neighbours.number[i] = count - 1
-            return
+    entry = count  # of j; without a branch the search takes a few instructions of whole registers
+    for k in range(LIST_CAPACITY):
+        entry = min(entry, k if members[i, k] == j else count)
+    if entry < count:
+        members[i, entry] = members[i, count - 1]
+        neighbours.number[i] = count - 1
 
 
 @jit

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from roughgas.kernel import hooks
-from roughgas.kernel.scheme import LISTS, cell_grid, density_of, is_swept
+from roughgas.kernel.scheme import LISTS, MIN_CELLS, SWEEP, cell_grid, cheapest, density_of
 from roughgas.kernel.state import (
     COUNTS,
     NOBODY,
@@ -32,7 +32,8 @@ CACHE_LINE = 64  # bytes
 MIN_CELL_WIDTH = 2.002  # over the largest radius: a diameter, and a margin for rounding
 BODY_FIELDS = {"radius": (float,), "mass": (float,), "inertia": (float,), "species": (np.int32,)}
 TIMES_OF = "moment of "  # before the name of an effect: its array of particle_times
-SKIN = 0.45  # sides of the regions of neighbour lists, in a: cells are wider by as much
+BED_SKIN, GAS_SKIN = 0.45, 0.6  # sides of the regions of neighbour lists, in a: in a bed, where the
+# surroundings change fast as it lands, and in a gas; cells are wider by as much
 LIST_CAPACITY = 16  # neighbours on a particle's list, which then fills one cache line
 
 
@@ -42,8 +43,9 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     Positions (N, D) are in particle radii a, velocities (N, D) and spins (N, 2 D - 3), which are
     surface velocities, in a/T. `precision` is the type of trajectories and spins. Effects that draw
     random numbers start from the numpy generator `rng`, by default with a fixed seed. A scene
-    without spin ignores the spins; a scene with several species needs the Bodies. `is_swept`
-    decides between sweep and cells.
+    without spin ignores the spins; a scene with several species needs the Bodies. The
+    cheapest scheme finds candidates for contacts, or a sweep where the box has no room for
+    MIN_CELLS along each axis.
 
     Particles are stored in the order of their positions: their order in memory decides between
     simultaneous events, and results must not depend on how the particles were numbered.
@@ -51,13 +53,15 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     number, dimension = position.shape
     narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
     radii = np.ones(number) if bodies is None else bodies.radius
-    width = narrowest + (SKIN if scene.scheme == LISTS else 0.0)
-    density = density_of(scene, position, radii, width)
-    grid = cell_grid(scene, density, width)
-    if is_swept(scene, number, density.packing, grid):
+    scheme = cheapest(scene, number, density_of(scene, position, radii, narrowest).packing)
+    skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN
+    width = narrowest + (skin if scheme == LISTS else 0.0)
+    grid = cell_grid(scene, density_of(scene, position, radii, width), width)
+    if scheme == SWEEP or min(grid.counts) < MIN_CELLS:
         state = _swept_state(scene, number, dimension, precision)
     else:
-        state = _celled_state(scene, number, dimension, precision, grid, narrowest)
+        reach = narrowest if scheme == LISTS else None
+        state = _celled_state(scene, number, dimension, precision, grid, reach)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -107,11 +111,11 @@ def _swept_state(scene, number, dimension, precision):
     )
 
 
-def _celled_state(scene, number, dimension, precision, grid, narrowest):
+def _celled_state(scene, number, dimension, precision, grid, reach):
     """Return an empty state with cells: a cache line for each particle's path, one for its events.
 
-    `grid` is the Grid of the cells; `narrowest` is the minimum of their widths without room for the
-    regions of neighbour lists.
+    `grid` is the Grid of the cells. Neighbour lists are for particles that may touch within the
+    distance `reach`; without it (None) there are none.
     """
     counts, widths = grid
     fields = _fields(scene, dimension, precision, CELL_SLOTS)
@@ -151,19 +155,19 @@ def _celled_state(scene, number, dimension, precision, grid, narrowest):
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
             first=np.full(math.prod(counts), NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave", "heading")},
-            neighbours=_neighbours(number, widths, narrowest) if scene.scheme == LISTS else None,
+            neighbours=None if reach is None else _neighbours(number, widths, reach),
         ),
     )
 
 
-def _neighbours(number, widths, narrowest):
+def _neighbours(number, widths, reach):
     """Return empty neighbour lists, with regions whose candidates all lie in adjacent cells.
 
-    `widths` are the sides of a cell, `narrowest` is the distance within which particles may touch.
+    `widths` are the sides of a cell, `reach` is the distance within which particles may touch.
     """
     return Neighbours(
         middle=np.zeros((number, len(widths))),
-        sides=tuple(width - narrowest for width in widths),
+        sides=tuple(width - reach for width in widths),
         members=_interleaved(number, {"members": (np.int32, LIST_CAPACITY)})["members"],
         number=np.zeros(number, np.int32),
         frame=np.zeros(2),

@@ -15,6 +15,7 @@ from roughgas.compiling.lanes import (
     bits,
     choose,
     gather,
+    gather_rows,
     iota,
     lanes_of,
     larger,
@@ -157,10 +158,11 @@ def predict_contacts(state, scene, i, begin, beyond, time):
 @jit
 def _paths_of(trajectory, particles, box):
     """Return (position, velocity, time) of several particles, in lanes as their numbers are."""
+    columns, dimension = gather_rows(trajectory, particles, box + box + (0.0,)), len(box)
     return (
-        tuple(gather(trajectory, k, particles) for k in range(len(box))),
-        tuple(gather(trajectory, len(box) + k, particles) for k in range(len(box))),
-        gather(trajectory, 2 * len(box), particles),
+        tuple(columns[k] for k in range(dimension)),
+        tuple(columns[dimension + k] for k in range(dimension)),
+        columns[2 * dimension],
     )
 
 

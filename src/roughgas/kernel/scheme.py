@@ -19,6 +19,7 @@ BREAK_EVEN = {  # dimension -> packing fractions, and the N up to which a sweep 
     3: ((0.001, 0.01, 0.05, 0.2, 0.5), (2600, 1400, 800, 500, 320)),
 }
 BED_PACKING = 0.2  # for this choice, of a gas with an open top: dense below, dilute above
+LISTS_FROM = {2: math.inf, 3: 0.45}  # dimension -> packing from which on lists cost less than cells
 # Particles in a cell, where cells are wide enough: a minimum, from the packing DENSE on, and a
 # maximum in dilute gases, where cells of more particles are crossed less often.
 PER_CELL = {2: (0.6, 3.0), 3: (0.4, 1.0)}
@@ -54,16 +55,19 @@ def density_of(scene, position, radii, narrowest):
     return Density(lengths, number, float(number * unit_sphere * np.mean(radii**dimension)))
 
 
-def is_swept(scene, number, packing, grid):
-    """Return whether candidates for contacts are found by a sweep over all `number` particles.
+def cheapest(scene, number, packing):
+    """Return the scheme that costs least for `number` particles: SWEEP, CELLS or LISTS.
 
-    `packing` is as in Density, `grid` the Grid of the cells. A box without room for MIN_CELLS along
-    each axis is always swept.
+    `packing` is as in Density. A choice of the user (Scene.scheme) is returned as it is.
     """
-    if scene.scheme == SWEEP or min(grid.counts) < MIN_CELLS:
-        return True
-    packing = BED_PACKING if scene.box[-1] is None else packing
-    return scene.scheme == CHEAPEST and number <= break_even(len(scene.box), packing)
+    if scene.scheme != CHEAPEST:
+        return scene.scheme
+    dimension, is_bed = len(scene.box), scene.box[-1] is None
+    if number <= break_even(dimension, BED_PACKING if is_bed else packing):
+        return SWEEP
+    effects = scene.effects
+    may_have_lists = effects.shear is None and effects.species is None and not is_bed
+    return LISTS if may_have_lists and packing >= LISTS_FROM[dimension] else CELLS
 
 
 def break_even(dimension, packing):
