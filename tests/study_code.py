@@ -79,6 +79,13 @@ def study_in_present_folder(tmp_path, monkeypatch):
     study_code.use(())
 
 
+def study_in_use(name):
+    """Make the effects of a study of this clone legal, and forget them after a test."""
+    study_code.use([ROOT / "studies" / name])
+    yield
+    study_code.use(())
+
+
 def add_study(name="mine", effects=EFFECTS, observables=OBSERVABLES, config=CONFIG, folder="."):
     """Write a study into studies/ of a folder, without the files whose text is None."""
     study = Path(folder, "studies", name)
