@@ -1,7 +1,7 @@
 # Products of more than one study, and of a complete run: tables, pages, the article, an archive.
 
 
-rule table_of_extensions:
+use rule table as table_of_extensions with:
     input:
         data=from_wildcards(run_products.data, product="extensions"),
     output:
@@ -13,12 +13,6 @@ rule table_of_extensions:
         ),
     log:
         "logs/{scale}/extensions_csv.log",
-    params:
-        code=code_of("results.tables"),
-    message:
-        "write {output}"
-    shell:
-        "python -P -m roughgas.steps table {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule run_times:

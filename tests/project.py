@@ -95,6 +95,9 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "scholz_2017.spinners": {"langevin.spin_drag": ["1"]},
     "brito_2013.smooth": {"beta": ["-1"]},
     "gomez_gonzalez_2020.suspension": {"shear.velocity": ["1.2"]},
+    "multiplicative.disks": {"speed_kicks.exponent": ["1"], "beta": ["-1"]},
+    "impact_roughness.disks": {"roughness_law.exponent": ["1"]},
+    "thermal_floor.bed": {"thermal_floor.temperature": ["5"], "r": ["1"]},
     "patterns.layers": {"seeds": 1},  # of seven cases
     "transport.strained": {"shear.velocity": ["0.4"]},
 }

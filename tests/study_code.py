@@ -4,7 +4,10 @@ import re
 import shutil
 from pathlib import Path
 
+from brute_force import run
+
 from roughgas.config import study_code
+from roughgas.simulation.energy_balance import balance, imbalance
 
 ROOT = Path(__file__).parent.parent
 GUIDE = (ROOT / "docs/effects.md").read_text()
@@ -77,6 +80,23 @@ def study_in_present_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     yield add_study()
     study_code.use(())
+
+
+def study_in_use(name):
+    """Make the effects of a study of this clone legal, and forget them after a test."""
+    study_code.use([ROOT / "studies" / name])
+    yield
+    study_code.use(())
+
+
+def booked_energies(scene, state, collisions):
+    """Run a gas for `collisions`; return the gains of all accounts, which sum to its energy's."""
+    before = balance(state, scene)
+    run(state, scene, 1, collisions=collisions)
+    after = balance(state, scene)
+    booked = after.ledger - before.ledger
+    assert imbalance(booked, after.energy - before.energy) < 1e-12
+    return booked
 
 
 def add_study(name="mine", effects=EFFECTS, observables=OBSERVABLES, config=CONFIG, folder="."):

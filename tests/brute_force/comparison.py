@@ -38,8 +38,9 @@ def snapshot(state, scene):
 
 def drive_of(state, order):
     """The Drive of a kernel's state: its next kicks or bath steps; None without either."""
-    moments = state.particle_times
-    next_steps = moments.langevin if moments.thermostat is None else moments.thermostat
+    drives = ("thermostat", "langevin", "speed_kicks")
+    times = [getattr(state.particle_times, name, None) for name in drives]
+    next_steps = next((steps for steps in times if steps is not None), None)
     if next_steps is None:
         return None
     word = 0 if state.random is None else state.random[0]

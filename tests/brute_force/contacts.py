@@ -37,6 +37,13 @@ class Contacts:
             self.last_contacts[k] = self.time
         return 1.0 if soon else r
 
+    def _roughness(self, beta, speed):
+        """Roughness of a contact at a normal speed: 1 - beta grows as a power of it, up to 2."""
+        if self.world.roughness_power is None:
+            return beta
+        reference, exponent = self.world.roughness_power
+        return 1.0 - min(2.0, (1.0 - beta) * (speed / reference) ** exponent)
+
     def _collide(self, i, j):
         """Carry out a contact of a pair: the collision rule of the paper, term by term."""
         world = self.world
@@ -47,6 +54,7 @@ class Contacts:
         n /= math.sqrt(n @ n)
         r, beta, mu = self.material(i, j)
         r = self._restitution(r, abs(v @ n), i, j)
+        beta = self._roughness(beta, abs(v @ n))
         v_n = (v @ n) * n
         mass, moment = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
         energies_before = self.energies[[i, j]]
@@ -102,6 +110,7 @@ class Contacts:
         n[axis] = direction
         g = in_three_dimensions(self.v[i]) - velocity - np.cross(self.w[i], n)
         r = self._restitution(r, abs(g @ n), i)
+        beta = self._roughness(beta, abs(g @ n))
         normal_velocity = (g @ n) * n
         mass = self.mass[i]
         impulse = mass * (1.0 + r) * normal_velocity

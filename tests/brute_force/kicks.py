@@ -45,11 +45,14 @@ class Drive(NamedTuple):
 
 
 class Kicks:
-    """The kicks of a thermostat (power, spin share, interval)."""
+    """The kicks of a thermostat, from its settings, which may grow as a power of the speed."""
 
     def __init__(self, thermostat, inertia, dimension, drive, bodies):
         self.bodies = bodies
-        power, share, self.interval = thermostat
+        power, share, self.interval = (
+            thermostat[key] for key in ("power", "spin_share", "interval")
+        )
+        self.speed, self.exponent = thermostat.get("speed", 1.0), thermostat.get("exponent", 0.0)
         self.inertia, self.dimension, self.spins = inertia, dimension, 2 * dimension - 3
         self.due, self.order = list(drive.due), list(drive.order)
         self.random = SplitMix(drive.word)
@@ -70,15 +73,16 @@ class Kicks:
         candidates = [k for k in self.order if k != i]
         j = candidates[math.floor(self.random.uniform() * len(candidates))]
         m = self.bodies.mass
+        growth = (math.sqrt(v[i] @ v[i]) / self.speed) ** self.exponent
         # so that p^2/2 (1/m_i + 1/m_j) is the same for any pair
-        size = self.kick * math.sqrt(2.0 / (1.0 / m[i] + 1.0 / m[j]))
+        size = growth * self.kick * math.sqrt(2.0 / (1.0 / m[i] + 1.0 / m[j]))
         for axis in range(self.dimension):
             kick = self._component(size)
             v[i, axis] += kick / m[i]
             v[j, axis] -= kick / m[j]
         if self.inertia:
             for k in (i, j):
-                size = self.spin_kick * math.sqrt(self.inertia / (m[k] * self.bodies.q[k]))
+                size = growth * self.spin_kick * math.sqrt(self.inertia / (m[k] * self.bodies.q[k]))
                 for axis in range(3 - self.spins, 3):
                     w[k, axis] += self._component(size)
         self.due[i] += self.interval

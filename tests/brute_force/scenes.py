@@ -138,15 +138,16 @@ def scene_of(experiment, r, beta):
     """(Scene of the kernel, World of the brute force) of the same experiment."""
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
-    floor, thermostat, shaken = (
-        effects.get(name) for name in ("floor", "thermostat", "shaken_walls")
-    )
+    floor, shaken = effects.get("floor"), effects.get("shaken_walls")
+    if "thermal_floor" in effects:  # the floor itself is never met
+        floor = None
     bath = effects.get("langevin")
     noisy = bath and any(
         bath.get(f"{prefix}{quantity}") for prefix in ("", "spin_") for quantity in NOISE
     )
-    table, power, threshold = (
-        effects.get(name) for name in ("restitution_table", "power_law", "threshold")
+    table, power, threshold, roughness = (
+        effects.get(name)
+        for name in ("restitution_table", "power_law", "threshold", "roughness_law")
     )
     walls = effects.get("walls", shaken)
     if walls:
@@ -160,8 +161,7 @@ def scene_of(experiment, r, beta):
         beta=beta,
         q=effects["spin"]["inertia"] if "spin" in effects else None,
         mu=effects.get("friction", {}).get("mu"),
-        thermostat=thermostat
-        and (thermostat["power"], thermostat["spin_share"], thermostat["interval"]),
+        thermostat=effects.get("thermostat", effects.get("speed_kicks")),
         delta=effects.get("delta", {}).get("speed", 0.0),
         bath=bath and bath | {"noise": noisy} | medium(experiment),
         acceleration=acceleration_of(effects.get("gravity"), len(periods)),
@@ -179,6 +179,7 @@ def scene_of(experiment, r, beta):
         viscous=effects.get("viscoelastic", {}).get("speed", 0.0),
         table=table and (table["speed"], table["restitution"], table["reference"]),
         power=power and (power["speed"], power["exponent"], power["least"]),
+        roughness_power=roughness and (roughness["speed"], roughness["exponent"]),
         threshold=threshold and (threshold["speed"], threshold["restitution"]),
     )
     return build(experiment, r, beta), world

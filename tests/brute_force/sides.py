@@ -13,7 +13,16 @@ AXES = {
     "front_wall": 1,
     "back_wall": 1,
 }  # of other walls: the last
-LOW_WALLS = ("left_wall", "front_wall", "bottom_wall")
+LOW_WALLS = ("left_wall", "front_wall", "bottom_wall", "thermal_floor")
+SIDES = (
+    "left_wall",
+    "right_wall",
+    "front_wall",
+    "back_wall",
+    "bottom_wall",
+    "lid",
+    "thermal_floor",
+)
 DEFAULTS = {
     "velocity": 0.0,
     "amplitude": 0.0,
@@ -112,7 +121,7 @@ def resting_wait(gap, speed, weight):
 def sides_of(effects, box):
     """The walls in the settings of effects, as Sides; `box` has the lengths of its sides."""
     sides = []
-    for name in ("left_wall", "right_wall", "front_wall", "back_wall", "bottom_wall", "lid"):
+    for name in SIDES:
         if name in effects:
             last = len(box) - 1
             axis = AXES.get(name, last)

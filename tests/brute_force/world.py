@@ -17,7 +17,7 @@ class World(NamedTuple):
     beta: float
     q: float | None  # None: particles do not spin
     mu: float | None = None  # coefficient of friction; None: contacts never slide
-    thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
+    thermostat: dict | None = None  # settings of random kicks
     bath: dict | None = None  # settings of a Langevin bath, and whether it has noise
     delta: float = 0.0  # half the normal speed that contacts of pairs gain
     acceleration: tuple[float, ...] = ()  # of gravity along each axis; empty without gravity
@@ -33,6 +33,7 @@ class World(NamedTuple):
     viscous: float = 0.0  # reference speed of viscoelastic contacts; 0: r is constant
     table: tuple[list, list, float] | None = None  # speeds, restitutions, reference speed
     power: tuple[float, float, float] | None = None  # reference speed, exponent, lowest r
+    roughness_power: tuple[float, float] | None = None  # reference speed, exponent
     threshold: tuple[float, float] | None = (
         None  # speed, and restitution that slower contacts have at least
     )

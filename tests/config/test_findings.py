@@ -77,6 +77,21 @@ def test_an_edited_study_has_no_findings_until_its_criteria_are_fixed(load_mine,
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("file", ["effects.py", "observables.py", "laws.py"])
+def test_findings_are_of_the_effects_and_observables_of_the_study(load_mine, file):
+    """And of files that these import; an edit of a figure changes no data."""
+    study = Path("studies", "mine")
+    (study / "laws.py").write_text("SPEED = 1.0\n")
+    (study / "observables.py").write_text("from .laws import SPEED\n")
+    (study / "effects.py").write_text("\n")
+    findings.write(load_mine(SIGNED), "mine")
+    (study / "figure.py").write_text("\n")
+    assert findings.reservation(load_mine(), "mine") == ""
+    (study / file).write_text((study / file).read_text() + "ADDED = 1\n")
+    assert "other experiments or criteria" in findings.reservation(load_mine(), "mine")
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WITHOUT_EFFECT)
 def test_findings_survive_edits_that_change_no_data(load_mine, name):
     """The copy has other experiments' names alone; scales other than the paper's do not count."""

@@ -116,3 +116,29 @@ def test_species_may_rotate_in_opposite_directions():
     assert point["mean_spin"] == pytest.approx(moments @ [3.0, -2.0, 1.0] / moments.sum(), rel=1e-9)
     assert point["E_rot_unsubtracted"] > 1.0
     assert np.shape(point["mean_spin_species_trusted"]) == (3,)
+
+
+@pytest.mark.slow  # compiles a kernel
+@pytest.mark.parametrize("uneven", [False, True])
+def test_the_mean_spin_follows_the_medium_through_stages(uneven):
+    """Smooth particles without noise: exactly, from rest to the first medium and to the second.
+
+    Averages are over time, in the second stage, or in both, whose intervals then differ.
+    """
+    bath = {"interval": 0.5, "drag": 0.1, "temperature": 1.0, "spin_drag": 0.2}
+    second = {"duration": 20.0, "effects": {"langevin": {"spin_velocity": -1.0}}}
+    second |= {"sample_every": 1.0} if uneven else {}
+    stages = [{"duration": 10.0, "measure": uneven}, second]
+    schedule = {"kind": "stages", "sample_every": 0.5, "stages": stages}
+    experiment = gas(40, (30, 30), bath | {"spin_velocity": 2.0}, schedule=schedule)
+    point = measured(experiment, 0.9, -1.0)
+    first, time = 2.0 * (1.0 - math.exp(-2.0)), np.asarray(point["time"])
+    expected = np.where(
+        time <= 10.0,
+        2.0 * (1.0 - np.exp(-0.2 * time)),
+        -1.0 + (first + 1.0) * np.exp(-0.2 * (time - 10.0)),
+    )
+    assert point["mean_spin_series"] == pytest.approx(expected, rel=1e-9)
+    weights = np.diff(time, prepend=0.0) * (uneven | (time > 10.0))
+    assert point["mean_spin"] == pytest.approx(np.average(expected, weights=weights), rel=1e-9)
+    assert math.isnan(point["mean_spin_stderr"]) == uneven

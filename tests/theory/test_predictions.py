@@ -60,6 +60,14 @@ def test_equal_species_are_predicted_as_a_single_species(kind, changes):
     assert ratios == pytest.approx(predicted_ratio(single, r, beta), rel=1e-8)
 
 
+def test_kicks_without_a_steady_state_have_no_theory():
+    """Kicks to the spins of smooth particles, and kicks to elastic particles of any species."""
+    beta = np.array([-1.0, 0.0, 1.0])
+    kicked = attributes(kind="lun", spin_share=0.3)
+    assert np.isnan(predicted_ratio(kicked, 0.9, beta)).tolist() == [True, False, False]
+    assert np.isnan(predicted_ratio(kicked, 1.0, beta)).tolist() == [True, False, True]
+
+
 def test_a_cooling_mixture_is_predicted_at_its_packing():
     gas = theory.mixture(SPECIES, 0.9, 0.2)
     expected = theory.mixture_cooling(gas, 160 * np.pi * 2.5 / 1e4).overall_ratio(gas)

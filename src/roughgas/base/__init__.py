@@ -31,6 +31,7 @@ from roughgas.base.mappings import (
     NamedValues,
     Record,
     merged,
+    shared_entries,
 )
 from roughgas.base.text import (
     all_in_rst,
@@ -77,6 +78,7 @@ __all__ = [
     "markdown",
     "merged",
     "on_one_line",
+    "shared_entries",
     "short_repr",
     "sorted_json",
     "unknown_name_error",

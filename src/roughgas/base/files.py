@@ -155,21 +155,45 @@ def code_in(
     folder and from the package, and `extra_files` of the folder. Imports of the package's modules
     in `alone` do not count. Raises InputError for a file that is missing or is no Python.
     """
-    folder, pending, package, digests = Path(folder), [name], set[str](), {}
+    folder = Path(folder)
+    trees = _trees(folder, name)
+    package = {module for tree in trees.values() for module in _imports(tree, True)}
+    text = code_of(*package, alone=alone) + _digests(folder, [*trees, *extra_files])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def sources_in(folder: str | Path, *names: str) -> str:
+    """Return digests of the files of a study's modules and of those that these import from the
+    folder; "" for modules that are not there.
+
+    Raises InputError for a file that is no Python.
+    """
+    folder = Path(folder)
+    return _digests(folder, _trees(folder, *(n for n in names if (folder / f"{n}.py").exists())))
+
+
+def _digests(folder: Path, files: Iterable[str]) -> str:
+    """Return the name and the SHA-256 digest of each of the `files` of a folder, sorted."""
+    return "".join(
+        str((file, hashlib.sha256((folder / file).read_bytes()).hexdigest()))
+        for file in sorted({*files})
+    )
+
+
+def _trees(folder: Path, *names: str) -> dict[str, ast.Module]:
+    """Return the syntax trees of modules of a study and of those that these import from its folder.
+
+    They are by file. Raises InputError for a file that is missing or is no Python.
+    """
+    pending, trees = [*names], dict[str, ast.Module]()
     while pending:
         file = f"{pending.pop()}.py"
-        if file not in digests:
+        if file not in trees:
             with _python(folder / file):
-                tree = ast.parse((folder / file).read_bytes())
-            digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
-            package |= set(_imports(tree, True))
-            pending += [
-                sibling for sibling in _siblings(tree) if (folder / f"{sibling}.py").exists()
-            ]
-    for file in extra_files:
-        digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
-    text = code_of(*package, alone=alone) + "".join(map(str, sorted(digests.items())))
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+                trees[file] = ast.parse((folder / file).read_bytes())
+            siblings = _siblings(trees[file])
+            pending += [name for name in siblings if (folder / f"{name}.py").exists()]
+    return trees
 
 
 @contextmanager

@@ -28,3 +28,15 @@ def merged(
         else:
             result[key] = change
     return result
+
+
+def shared_entries(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entries that two mappings share, nested mappings key by key."""
+    shared = {}
+    for key in first.keys() & second.keys():
+        value, other = first[key], second[key]
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            shared[key] = shared_entries(value, other)
+        elif value == other:
+            shared[key] = value
+    return shared

@@ -1,10 +1,10 @@
 """Whether the findings and criteria of a study belong to its data: by its name and a digest.
 
 README.md of a study states findings, and claims.yaml says which criteria were fixed before the
-data. Both are true of one study with its experiments, tasks and criteria. findings.yaml in its
-folder therefore holds its name and their digest; for a copied or edited study they differ. A
-criterion is fixed by writing this file, with `python -m roughgas.steps fix_criteria`, before the
-data are simulated.
+data. Both are true of one study with its experiments, effects, observables, tasks and criteria.
+findings.yaml in its folder therefore holds its name and their digest; for a copied or edited study
+they differ. A criterion is fixed by writing this file, with `python -m roughgas.steps
+fix_criteria`, before the data are simulated.
 """
 
 import hashlib
@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from roughgas.base import InputError, Record, check_one_of, sorted_json
-from roughgas.base.files import write_text
+from roughgas.base.files import sources_in, write_text
 from roughgas.base.reading import read_yaml
 from roughgas.config.configuration import PAPER, Configuration
+from roughgas.config.study_code import EFFECTS, OBSERVABLES
 
 FILE = "findings.yaml"
 WITHOUT_EFFECT = {"description", "extends", "seeds_per_job", "betas_per_job"}
@@ -34,8 +35,9 @@ HEAD = """\
 def digest(configuration: Configuration, name: str) -> str:
     """Return a hash of the experiments, tasks and criteria of the study `name`, 16 hex digits.
 
-    Settings are complete, at the scale `paper`, and without their names and descriptions. Raises
-    InputError for a configuration without this scale or study, and for illegal settings.
+    Settings are complete, at the scale `paper`, and without their names and descriptions; a study
+    with effects or observables has the text of their files, too. Raises InputError for a
+    configuration without this scale or study, and for illegal settings.
     """
     check_one_of("study", name, configuration.studies)
     check_one_of("scale", PAPER, configuration.scales)
@@ -51,6 +53,7 @@ def digest(configuration: Configuration, name: str) -> str:
     criteria = {key: _only(row, CRITERION_KEYS) for key, row in statements.items()}
     tasks = study.tasks.settings[PAPER] if study.tasks else {}
     text = sorted_json({"experiments": settings, "tasks": tasks, "criteria": criteria})
+    text += sources_in(study.folder, EFFECTS, OBSERVABLES)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

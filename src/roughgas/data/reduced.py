@@ -154,11 +154,11 @@ SCATTERED = (
 COOLING_SERIES = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
 """Series of a cooling gas without a constant R."""
 STAGE_VARIABLES = (
-    *("E_rot_series", "collisions_series", "energy_input_series", "energy_gain_series"),
-    *("stage_begin", "stage_input"),
+    *("E_rot_series", "mean_spin_series", "collisions_series"),
+    *("energy_input_series", "energy_gain_series", "stage_begin", "stage_input"),
 )
 """Further variables of a gas through stages with more dimensions than r and beta."""
-STAGE_VARIABLES_WITH_ERRORS = ("E_trans_series", "R_series", *STAGE_VARIABLES[:4], "stage_input")
+STAGE_VARIABLES_WITH_ERRORS = ("E_trans_series", "R_series", *STAGE_VARIABLES[:-2], "stage_input")
 """Series and inputs of a gas through stages with an error from their scatter over seeds."""
 SERIES_OF_SEEDS = ("E_trans_series", "E_rot_series", "collisions_series")
 """Series of a gas through stages that are also kept for each seed, as NAME_seed.

@@ -190,6 +190,7 @@ def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict
 _IN_ROTATION = _of_spin("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)")
 _TRANSLATION = Variable("translational energy per degree of freedom", ENERGY)
 _ROTATION = _of_spin("rotational energy per degree of freedom", ENERGY)
+_MEAN_SPIN = "mean angular velocity times a, about the axis of the medium"
 _INPUT = "energy per particle that a source has put in since the start (negative: taken out)"
 _GAIN = "change of the energy per particle, kinetic and potential, since the start"
 
@@ -267,12 +268,7 @@ POINT = {
     "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", FLOWING),
     "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(FLOWING,)),
     "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, FLOWING),
-    **_with_errors(
-        "mean_spin",
-        "mean angular velocity times a, about the axis of the medium",
-        SPINNERS,
-        SPEED,
-    ),
+    **_with_errors("mean_spin", _MEAN_SPIN, SPINNERS, SPEED),
     "R_flow_shift": _of_spin("R over the local flow, less R over the mean flow", "1", SHEARED),
     "R_flow_sigma": _of_spin("sigmas by which R_flow_shift differs from 0", "1", SHEARED),
     "shear_rate": Variable(
@@ -313,6 +309,7 @@ POINT = {
     "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
     "E_trans_series": _TRANSLATION._replace(dims=("sample",)),
     "E_rot_series": _ROTATION._replace(dims=("sample",)),
+    "mean_spin_series": _series(_MEAN_SPIN, SPEED, STAGES, SPINNERS),
     "collisions_series": _series("collisions per particle since the start", "1", STAGES),
     "energy_input_series": Variable(_INPUT, ENERGY, ("sample", "source", "motion"), when=(STAGES,)),
     "energy_gain_series": Variable(_GAIN, ENERGY, ("sample", "motion"), when=(STAGES,)),

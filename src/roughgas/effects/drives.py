@@ -150,11 +150,14 @@ class Thermostat(NamedTuple):
     def from_settings(cls, settings, context):
         """Return the effect from ThermostatSettings and a SceneContext.
 
-        Raises InputError for a spin_share > 0 if particles do not spin.
+        Raises InputError for a single particle, and for a spin_share > 0 if particles do not spin.
         """
+        if context.particles == 1:
+            raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
         dimension, share = len(context.box), settings.spin_share
         if "spin" not in context.effects and share > 0.0:
-            raise InputError("effects.thermostat.spin_share", share, "be 0 where nothing spins")
+            key = f"effects.{context.name}.spin_share"
+            raise InputError(key, share, "be 0 where nothing spins")
         inertia = context.effects["spin"].inertia if "spin" in context.effects else 1.0
         energy = settings.power * settings.interval  # of one kick
         # <x^2> = k^2/3; two particles with m v^2/2 each, and as many spins with q m (a w)^2/2 each
@@ -188,6 +191,17 @@ def resolve_kick(thermostat, account, code, state, scene, i, time):
     Hook `resolve` (kernel.hooks): the energy gained is entered in the effect's account, whose index
     is `account`; the code is always 0.
     """
+    partner = kick_pair(thermostat, account, state, scene, i, time)
+    state.particle_times.thermostat[i] += thermostat.interval
+    return partner
+
+
+@jit
+def kick_pair(thermostat, account, state, scene, i, time):
+    """Kick particle i and a random partner at `time`; return the partner.
+
+    The arguments are as in `resolve_kick`.
+    """
     number_of_partners = len(state.changes) - 1
     partner = int(uniform(state.random) * number_of_partners)
     partner += partner >= i
@@ -200,7 +214,6 @@ def resolve_kick(thermostat, account, code, state, scene, i, time):
     if state.spin is not None:
         _kick_spin(thermostat, account, state, scene, i)
         _kick_spin(thermostat, account, state, scene, partner)
-    state.particle_times.thermostat[i] += thermostat.interval
     return partner
 
 

@@ -45,7 +45,8 @@ import numpy as np
 from roughgas.base import RESTITUTION, InputError
 from roughgas.base.fields import Settings, number, numbers
 from roughgas.compiling.jit import compiled, jit
-from roughgas.effects.settings import register
+from roughgas.effects.settings import register, whole_quarters
+from roughgas.kernel.mathematics import quarter_power
 from roughgas.kernel.state import EXPONENT
 
 LAWS = ("viscoelastic", "power_law", "restitution_table")
@@ -95,11 +96,8 @@ class PowerLaw(NamedTuple):
         Raises InputError beside another law, and for an exponent that is no multiple of 1/4.
         """
         check_only_law(context)
-        quarters = 4.0 * settings.exponent
-        if not quarters.is_integer():
-            key = "effects.power_law.exponent"
-            raise InputError(key, settings.exponent, "be a multiple of 1/4")
-        return cls(settings.speed, int(quarters), settings.least)
+        quarters = whole_quarters(context, settings.exponent)
+        return cls(settings.speed, quarters, settings.least)
 
 
 @jit
@@ -110,10 +108,8 @@ def restitution_by_power(law, account, r, state, i, j, time, speed):
     without the other arguments except State.counts.
     """
     ratio = math.ldexp(abs(speed), int(state.counts[EXPONENT])) / law.speed
-    root, power = math.sqrt(math.sqrt(ratio)), 1.0
-    for _ in range(law.quarters):
-        power *= root
-    return max(min(r, law.minimum), 1.0 - (1.0 - r) * power)
+    loss = (1.0 - r) * quarter_power(ratio, law.quarters)
+    return max(min(r, law.minimum), 1.0 - loss)
 
 
 register(PowerLaw, PowerLawSettings, restitution=restitution_by_power)

@@ -51,6 +51,7 @@ class SceneContext(NamedTuple):
     restitution_of_species: Sequence[float] = ()  # values that species or pairs set themselves
     roughness_of_species: Sequence[float] = ()
     spin_velocity_of_species: Sequence[float | None] = ()  # of each species, None if not given
+    particles: int = 2  # their number
     name: str = ""  # of the effect to build
 
 
@@ -106,3 +107,15 @@ def check_speed(context: SceneContext, amplitude: float, period: float) -> None:
     if not Interval(SPEED_RANGE).holds(amplitude / period):
         key = f"effects.{context.name}: amplitude/period"
         raise InputError(key, amplitude / period, f"lie in {SPEED_RANGE} a/T")
+
+
+def whole_quarters(context: SceneContext, exponent: float) -> int:
+    """Return four times the `exponent` of an effect's power of a speed.
+
+    Raises InputError unless the exponent is a multiple of 1/4: such powers consist of roots and
+    products, the same bits on every machine.
+    """
+    quarters = 4.0 * exponent
+    if not quarters.is_integer():
+        raise InputError(f"effects.{context.name}.exponent", exponent, "be a multiple of 1/4")
+    return int(quarters)

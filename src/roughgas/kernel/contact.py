@@ -243,7 +243,7 @@ def _with_minimum_departure(impulse, n, v, effective_mass, min_departure):
 
 @jit
 def _effective_material(effects, material, state, i, j, time, speed):
-    """Return (r, beta) of a contact, r after all effects that change the restitution.
+    """Return (r, beta) of a contact that sticks, after all effects that change either with speed.
 
     `material` is (r, beta) before; `speed` is the normal component of the relative velocity,
     negative where the partners approach; j is NOBODY at a wall. An altered r is counted.
@@ -254,6 +254,9 @@ def _effective_material(effects, material, state, i, j, time, speed):
         r = hook.function(effects[hook.effect_index], hook.account, r, state, i, j, time, speed)
     if r != unaltered:
         state.counts[ALTERED_RESTITUTIONS] += 1
+    for hook in active(effects, "sticking_roughness"):
+        k = hook.effect_index
+        beta = hook.function(effects[k], hook.account, beta, state, i, j, time, speed)
     return r, beta
 
 

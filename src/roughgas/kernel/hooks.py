@@ -37,11 +37,15 @@ class Hooks(NamedTuple):
     """(effect, account, r, state, i, j, time, speed) -> normal restitution of a contact; r is the
     result of the effects before, `speed` the normal relative velocity, negative where the partners
     approach; j < 0 at a boundary"""
+    sticking_roughness: Callable | None = None
+    """(effect, account, beta, state, i, j, time, speed) -> tangential restitution of a contact that
+    sticks; beta is the result of the effects before, the other arguments are as above"""
     roughness: Callable | None = None
     """(effect, account, beta, r, speed, slip_velocity, pair) -> tangential restitution of a contact
-    of particles that spin; beta is the result of the effects before, r and speed as above,
-    `slip_velocity` the tangential relative velocity of the surfaces, a vector, and `pair` the
-    particles.Pair. The state is no argument, so the result depends on ratios of velocities only"""
+    of particles that spin, where it may slide; beta is the result of the effects before, r and
+    speed as above, `slip_velocity` the tangential relative velocity of the surfaces, a vector, and
+    `pair` the particles.Pair. The state is no argument, so the result depends on ratios of
+    velocities only"""
     speed_gain: Callable | None = None
     """(effect, account) -> speed that a contact of a pair adds to the normal speed r |g_n| with
     which the particles part; the energy is entered in the effect's account"""

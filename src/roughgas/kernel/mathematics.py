@@ -54,6 +54,16 @@ def add_scaled(a, b, s):
 
 
 @jit
+def quarter_power(x, quarters):
+    """Return x >= 0 to the power quarters/4, for a whole number `quarters` >= 0, by roots and
+    products."""
+    root, power = math.sqrt(math.sqrt(x)), 1.0
+    for _ in range(quarters):
+        power *= root
+    return power
+
+
+@jit
 def read(array, i, first, like):
     """Return the components array[i, first:first + len(like)] as a tuple.
 

@@ -11,6 +11,8 @@ sorted coordinates along each, and `stacks` are the values of all points by vari
 axis, r, beta, ..., seed), with NaN for missing points.
 """
 
+import functools
+import json
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import netCDF4
 import numpy as np
 
-from roughgas.base import InputError, NamedValues
+from roughgas.base import InputError, NamedValues, shared_entries, sorted_json
 from roughgas.data import netcdf
 from roughgas.data.netcdf import Content, DamagedError, opened, require, unit_of
 from roughgas.data.point import Point, write_point
@@ -505,8 +507,8 @@ def _standard_error(values: np.ndarray) -> np.ndarray:
 
 
 def _common_attributes(points: Sequence[Summary]) -> NamedValues:
-    """Return the attributes that all `points` share, and each attribute with versions of programs
-    that differ as a list of them.
+    """Return the attributes that all `points` share, each attribute with versions of programs that
+    differ as a list of them, and of settings that differ those that all share.
 
     Raises InputError for points that differ in any of COMMON_ATTRIBUTES.
     """
@@ -519,7 +521,9 @@ def _common_attributes(points: Sequence[Summary]) -> NamedValues:
     for name in list(shared):
         values = {str(point.attributes.get(name, "")) for point in points}
         differ = len(values) > 1 and name not in (SPECIES_ATTRIBUTE, LANGEVIN_ATTRIBUTE)
-        if differ and name in PROVENANCE:
+        if differ and name == "experiment_json":
+            shared[name] = sorted_json(functools.reduce(shared_entries, map(json.loads, values)))
+        elif differ and name in PROVENANCE:
             shared[name] = ", ".join(sorted(values))
         elif differ or name in (*POINT_ATTRIBUTES, swept):
             del shared[name]

@@ -239,6 +239,7 @@ def _effects(experiment, r, beta, mixture):
             for quantity in ("restitution", "roughness")
         ),
         tuple(species.spin_velocity for species in experiment.species),
+        experiment.particles,
     )
     effects = build_effects(settings, context)
     return effects_tuple(effects | {"species": None if mixture is None else mixture.effect()})
@@ -273,14 +274,9 @@ def _check_gravity(effects):
 
 
 def _check_single_particle(particles, effects):
-    """Raise InputError for a single particle without a floor, or with a thermostat.
-
-    `particles` is the number of particles.
-    """
+    """Raise InputError for a single particle without a floor; `particles` is the number."""
     if particles == 1 and effects.floor is None:
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
-    if particles == 1 and effects.thermostat is not None:
-        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
 
 
 def draw_bodies(scene: Scene, experiment: SceneSettings, rng: np.random.Generator) -> Bodies | None:

@@ -100,18 +100,22 @@ def vertical_share(
     return _variables("vertical_share", share, np.array([1.0, -share]) / total.mean(), periods)
 
 
-def mean_spin_averages(spins: Sequence[np.ndarray], per_period: int) -> NamedValues:
+def mean_spin_averages(
+    spins: Sequence[np.ndarray], per_period: int, weights: np.ndarray | None = None
+) -> NamedValues:
     """Return the mean spins, averaged over a window, with their errors, by name.
 
     `spins` come from `energies.mean_spins`, in the measured window; the result is empty if they
-    are. Errors come from blocking over periods of the drive, of `per_period` samples.
+    are. Errors come from blocking over periods of the drive, of `per_period` samples. Averages have
+    the `weights` (samples,), by default equal ones.
     """
     if not spins:
         return {}
     periods = [period_means(spin, per_period) for spin in spins]
-    averages = _variables("mean_spin", spins[0].mean(), np.ones(1), periods[0][None])
+    means = [np.average(spin, weights=weights) for spin in spins]
+    averages = _variables("mean_spin", means[0], np.ones(1), periods[0][None])
     if spins[1:]:
-        averages["mean_spin_species"] = [spin.mean() for spin in spins[1:]]
+        averages["mean_spin_species"] = means[1:]
         averages["mean_spin_species_stderr"] = [blocking(means)[0] for means in periods[1:]]
     return averages
 

@@ -21,11 +21,18 @@ from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import Scene, build
 from roughgas.simulation import steady
-from roughgas.simulation.energies import Energies, energies_of, ratio, species_energies
+from roughgas.simulation.energies import (
+    Energies,
+    energies_of,
+    mean_spins,
+    ratio,
+    species_energies,
+)
 from roughgas.simulation.energy_averages import (
     contact_averages,
     driven_species_averages,
     mean_energies_and_R,
+    mean_spin_averages,
     trust_of_means,
 )
 from roughgas.simulation.energy_balance import energy_exchange, exchange_series
@@ -321,13 +328,20 @@ def run(
         for stage, columns in zip(stages, rows, strict=True)
     ]
     total, *species = (_joined_energies(energies) for energies in zip(*series, strict=True))
+    spins_of_stages = [
+        mean_spins(columns, stage.scene, gas.state)
+        for stage, columns in zip(stages, rows, strict=True)
+    ]
+    spins = [
+        np.concatenate(spin_of_stages) for spin_of_stages in zip(*spins_of_stages, strict=True)
+    ]
     changes = np.array([samples.changes(stage_legs[0].name)["put_in"] for stage_legs in legs])
     counts = [len(columns["time"]) for columns in rows]
     first = sum(count for count, stage in zip(counts, stages, strict=True) if not stage.measured)
     columns_of_run = concatenated(rows)
     collisions = 2.0 * (columns_of_run["collisions"] - initial_collisions) / gas.particles
     variables = {
-        **_measured_averages(total, species, first, stages),
+        **_measured_averages(total, species, spins, first, stages),
         **contact_averages(
             columns_of_run, first, 1, steady.inertia_of_contact_sums(gas.scene), initial_sums
         ),
@@ -407,11 +421,12 @@ def _joined_energies(energies_of_stages):
     )
 
 
-def _measured_averages(total, species, first, stages):
-    """Return averages over the measured samples, from `first` on, and series of species, by name.
+def _measured_averages(total, species, spins, first, stages):
+    """Return averages over the measured samples, from `first` on, and series of species and of the
+    mean spin, by name.
 
-    `total` and `species` are the energies (samples,) of all particles and of each species. The
-    series run through all stages.
+    `total` and `species` are the energies (samples,) of all particles and of each species, `spins`
+    their mean spins, as from `mean_spins`. The series run through all stages.
     """
     every, window = _spacing(stages, measured=True), total.map(lambda energy: energy[first:])
     weights, means = None, mean_energies_and_R(window, 1, every or math.nan)
@@ -421,6 +436,8 @@ def _measured_averages(total, species, first, stages):
     measured = [energies.map(lambda energy: energy[first:]) for energies in species]
     all_averages = driven_species_averages(species, 1, 1)
     series = {name: values for name, values in all_averages.items() if name.endswith("_series")}
+    means |= mean_spin_averages([spin[first:] for spin in spins], 1, weights)
+    series |= {"mean_spin_series": spins[0]} if spins else {}
     return means | driven_species_averages(measured, 1, 1, weights) | series
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import Attributes
+from roughgas.base import Attributes, InputError
 from roughgas.base.labels import SPECIES_PREFIX as SPECIES_KEY
 from roughgas.base.labels import species_settings
 from roughgas.theory import mixture_states
@@ -257,8 +257,9 @@ def mixture_at(attributes: Attributes, parameters: Mapping[str, float]) -> tuple
 def _mixture_ratio(attributes: Attributes, parameters: Mapping[str, float], swept: str) -> float:
     """Return R of theory of all particles of a mixture at the given `parameters` (`mixture_at`).
 
-    `attributes` are the attributes of the dataset, `swept` is the name of the swept quantity,
-    without its section.
+    NaN where kicks have no steady state, as those to the spins of smooth particles. `attributes`
+    are the attributes of the dataset, `swept` is the name of the swept quantity, without its
+    section.
     """
     cools = attributes["theory"] == "K"
     above_smooth = {"beta": max(parameters["beta"], NEARLY_SMOOTH)} if cools else {}
@@ -268,7 +269,10 @@ def _mixture_ratio(attributes: Attributes, parameters: Mapping[str, float], swep
     if "spin_share" in attributes or swept == "spin_share":
         share = parameters["spin_share"]
         power = (1 - share) * mixture_states.kick_power(gas)
-        return mixture_states.mixture_driven(gas, power, packing, share).overall_ratio(gas)
+        try:
+            return mixture_states.mixture_driven(gas, power, packing, share).overall_ratio(gas)
+        except InputError:  # contacts cannot dissipate the power
+            return math.nan
     equal = np.ones(len(gas.mass))
     return Temperatures(equal, mixture_states.mixture_rotation(gas, equal, packing)).overall_ratio(
         gas

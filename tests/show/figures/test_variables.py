@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from observed_sweep import observed_sweep
 from tests.show.figures.legibility import faults_of_letters
 
@@ -53,6 +54,19 @@ def test_values_and_their_errors_are_drawn():
     np.testing.assert_allclose(lines, np.outer([0.05, 0.1, 0.15], [0.0, 1.0, 4.0, 9.0]))
     assert labels(profile) == [rf"$\beta = {beta}$" for beta in ("-0.5", "0", "0.5")]
     assert profile.get_xlabel() == "height / a"
+
+
+def test_nine_components_have_nine_markers_and_lines():
+    """Over the sweep, of a stress, and along a height, of a profile of it."""
+    data = observed_sweep().drop_vars(["squares", "squares_stderr", "squares_trusted"])
+    axes = {"component": ["x", "y", "z"], "along": ["x", "y", "z"]}
+    stress = xr.DataArray(np.arange(9.0).reshape(3, 3), axes)
+    data = data.assign(stress=data.fast + stress, layers=data.profile + stress)
+    over, height = variables.draw(data, ["stress", "layers"]).axes
+    markers = [bars[0].get_marker() for bars in over.containers[:9]]
+    styles = [str(line._dash_pattern) for line in height.get_lines()[:9]]
+    assert len(set(markers)) == len(set(styles)) == 9
+    assert variables.DOTTED not in {line.get_linestyle() for line in height.get_lines()}
 
 
 def test_untrusted_errors_are_paler_and_explained():

@@ -82,7 +82,6 @@ def read_extended_xyz(path: str | Path, frame: int) -> FileParticles:
         table.require("velox")
     omega = table.vectors("omega*", "angular_velocity*")
     is_own = chosen.keys.get("source") == OWN_SOURCE
-    diameter, radius = table.positive("diameter"), table.positive("radius")
     species, names = _species(table)
     assert position is not None and velocity is not None
     return FileParticles(
@@ -90,7 +89,7 @@ def read_extended_xyz(path: str | Path, frame: int) -> FileParticles:
         velocity=velocity,
         angular_velocity=None if is_own else omega,
         surface_velocity=omega if is_own else None,
-        radius=radius if diameter is None else diameter / 2.0,
+        radius=table.radius(),
         mass=mass,
         species=species,
         names=names,

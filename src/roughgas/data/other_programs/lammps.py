@@ -89,7 +89,7 @@ def read_dump(path: str | Path, frame: int) -> FileParticles:
         position=position,
         velocity=velocity,
         angular_velocity=omega,
-        radius=_radius(table),
+        radius=table.radius(),
         mass=table.positive("mass"),
         species=_species(table),
         names=(),
@@ -126,12 +126,6 @@ def _dump_frames(file: TextFile) -> Iterator[DumpFrame]:
 def _bounds(file: TextFile, axis: str, width: int) -> list[float]:
     """Return the numbers in the next line: the bounds of the box along an axis, and a tilt."""
     return file.numbers(file.line(f"the bounds along {axis}"), width)
-
-
-def _radius(table: Table) -> np.ndarray | None:
-    """Return the radii (N,) of particles; None without a column of radii or diameters."""
-    diameter = table.positive("diameter")
-    return table.positive("radius") if diameter is None else diameter / 2.0
 
 
 def _species(table: Table) -> np.ndarray:

@@ -149,6 +149,14 @@ class Table(NamedTuple):
                 return values
         return None
 
+    def radius(self) -> np.ndarray | None:
+        """Return the radii (lines,), or halves of the diameters; None without either column.
+
+        Raises InputError as `positive`.
+        """
+        diameter = self.positive("diameter")
+        return self.positive("radius") if diameter is None else diameter / 2.0
+
     def integers(self, name: str, low: int, high: int) -> np.ndarray:
         """Return the whole numbers in the column `name`; raise InputError outside [low, high]."""
         values = self.values(name)[:, 0]

@@ -32,7 +32,17 @@ THEORY = "_theory"
 """End of the names of variables that hold theory beside a variable."""
 DECADES = 3
 """Powers of ten above which a vertical axis is logarithmic."""
-MAX_ROWS, MAX_LINES = 5, 10
+MAX_ROWS = 5
+COMPONENT_STYLES = (
+    *LINE_STYLES,
+    LineStyle(GREY, "P", (0, (3, 2))),
+    LineStyle(GREY, "X", (0, (14, 3))),
+    LineStyle(GREY, "<", (0, (8, 2, 2, 2))),
+    LineStyle(GREY, ">", (0, (8, 2, 2, 2, 2, 2))),
+    LineStyle(GREY, "*", (0, (3, 5))),
+)
+"""Markers and lines of the components of a variable, which have the colour of their series; a
+variable with more components is drawn in part."""
 ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
 LETTERS_PER_INCH = 13  # of the title
 
@@ -221,13 +231,13 @@ def _lines(
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, str, LineStyle]]:
     """Yield values, errors and trust, (n,) each `along` a dimension, label and style of each line.
 
-    The label names the other dimensions of the variable, as species; at most MAX_LINES are drawn.
+    The label names the other dimensions of the variable, as species; there are at most as many
+    lines as COMPONENT_STYLES.
     """
     values = row[name].transpose(..., along)
     errors = row.get(f"{name}_stderr", values * np.nan).transpose(..., along).values
     trusted = panel.trusted(row, name).transpose(..., along).values
-    for number, index in enumerate(sweep.line_indices(values)[:MAX_LINES]):
-        style = LINE_STYLES[number % len(LINE_STYLES)]
+    for style, index in zip(COMPONENT_STYLES, sweep.line_indices(values), strict=False):
         label = sweep.line_label(values, index)
         yield values.values[index], errors[index], trusted[index], label, style
 
