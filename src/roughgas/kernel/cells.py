@@ -509,12 +509,11 @@ def _remove_neighbour(neighbours, i, j):
     count, members = neighbours.number[i], neighbours.members
     if count > LIST_CAPACITY:
         return
-    entry = count  # of j; without a branch the search takes a few instructions of whole registers
-    for k in range(LIST_CAPACITY):
-        entry = min(entry, k if members[i, k] == j else count)
-    if entry < count:
-        members[i, entry] = members[i, count - 1]
-        neighbours.number[i] = count - 1
+    for k in range(count):
+        if members[i, k] == j:
+            members[i, k] = members[i, count - 1]
+            neighbours.number[i] = count - 1
+            return
 
 
 @jit

@@ -32,9 +32,10 @@ CACHE_LINE = 64  # bytes
 MIN_CELL_WIDTH = 2.002  # over the largest radius: a diameter, and a margin for rounding
 BODY_FIELDS = {"radius": (float,), "mass": (float,), "inertia": (float,), "species": (np.int32,)}
 TIMES_OF = "moment of "  # before the name of an effect: its array of particle_times
-BED_SKIN, GAS_SKIN = 0.45, 0.6  # sides of the regions of neighbour lists, in a: in a bed, where the
-# surroundings change fast as it lands, and in a gas; cells are wider by as much
-LIST_CAPACITY = 16  # neighbours on a particle's list, which then fills one cache line
+# Sides of the regions of neighbour lists, in a; cells are wider by as much. The surroundings of a
+# particle in a bed change fast as the bed lands.
+BED_SKIN, GAS_SKIN = 0.45, {2: 1.0, 3: 0.7}
+LIST_CAPACITY = 24  # neighbours on a list; in dense spheres 12 of them, and rarely more than 20
 
 
 def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, bodies=None):
@@ -54,7 +55,7 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
     radii = np.ones(number) if bodies is None else bodies.radius
     scheme = cheapest(scene, number, density_of(scene, position, radii, narrowest).packing)
-    skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN
+    skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN[dimension]
     width = narrowest + (skin if scheme == LISTS else 0.0)
     grid = cell_grid(scene, density_of(scene, position, radii, width), width)
     if scheme == SWEEP or min(grid.counts) < MIN_CELLS:

@@ -19,7 +19,7 @@ BREAK_EVEN = {  # dimension -> packing fractions, and the N up to which a sweep 
     3: ((0.001, 0.01, 0.05, 0.2, 0.5), (2600, 1400, 800, 500, 320)),
 }
 BED_PACKING = 0.2  # for this choice, of a gas with an open top: dense below, dilute above
-LISTS_FROM = {2: math.inf, 3: 0.45}  # dimension -> packing from which on lists cost less than cells
+LISTS_FROM = {2: 0.75, 3: 0.45}  # dimension -> packing from which on lists cost less than cells
 # Particles in a cell, where cells are wide enough: a minimum, from the packing DENSE on, and a
 # maximum in dilute gases, where cells of more particles are crossed less often.
 PER_CELL = {2: (0.6, 3.0), 3: (0.4, 1.0)}
