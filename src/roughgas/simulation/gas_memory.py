@@ -32,6 +32,7 @@ from roughgas.theory import (
 from roughgas.theory.mixture_states import kick_power, mixture_contact_values
 from roughgas.theory.mixtures import contact_frequencies, rate_matrix
 from roughgas.theory.relaxation import (
+    conduction_time,
     floor_hit_frequency,
     ratio_relaxation,
     slopes,
@@ -49,6 +50,7 @@ class GasMemory(NamedTuple):
     of_R: float  # integrated autocorrelation time of R, 2 over its relaxation rate
     energies: float  # e-fold of the slowest combination of the temperatures
     flow: float  # e-fold of the longest flow, or of the total momentum in a bath
+    settling: float  # e-fold of the slowest transient: of the energies, in a bed with its height
 
 
 class ThermalState(NamedTuple):
@@ -72,16 +74,18 @@ def gas_memory(
     """
     measured = np.isfinite(state.T_tr).all() and (state.T_tr > 0.0).all()
     if not (measured and state.frequency > 0.0):
-        return GasMemory(math.inf, math.inf, math.inf)
+        return GasMemory(math.inf, math.inf, math.inf, math.inf)
     gas = RateEquations(scene, state, mixture, packing)
     relaxation = gas.contacts() + gas.walls() + np.diag(gas.speed_gain_rates() - gas.drag_rates())
     spin_decay = _mean_spin_decay(scene, state)
     ratio_decay = min(ratio_relaxation(relaxation, gas.heating(), gas.capacity), spin_decay)
     slowest = min(slowest_relaxation(relaxation + gas.accelerated_contacts()), spin_decay)
+    energies = _decay_time(1.0, slowest)
     return GasMemory(
         of_R=_with_total_momentum(_decay_time(2.0, ratio_decay), scene, state),
-        energies=_decay_time(1.0, slowest),
+        energies=energies,
         flow=_decay_time(1.0, _flow_decay(scene, state)),
+        settling=_with_height(energies, scene, state, float(gas.capacity.sum())),
     )
 
 
@@ -329,6 +333,22 @@ def _with_total_momentum(of_R: float, scene: Scene, state: ThermalState) -> floa
     T_bath = bath.noise / (1.0 - bath.velocity_factor**2)
     weight = (T_bath / float(state.T_tr.mean())) ** 2 / state.particles
     return (of_R + weight / drag) / (1.0 + weight)
+
+
+def _with_height(energies: float, scene: Scene, state: ThermalState, capacity: float) -> float:
+    """Return the e-fold of a bed's transient (T), from that of its `energies` at constant height.
+
+    A bed is open above. Its potential energy is T_tr per particle, as of two degrees of freedom
+    beside the `capacity`, and its heat rises from the floor: both times add up.
+    """
+    gravity = scene.effects.gravity
+    weights = {} if gravity is None else gravity.along
+    upward = [abs(g) for axis, g in weights.items() if math.isinf(state.lengths[axis])]
+    if not upward:
+        return energies
+    T_tr = float(state.T_tr.mean())
+    heat_rise = conduction_time(T_tr, state.frequency, upward[0], len(scene.box))
+    return energies * (1.0 + 2.0 / capacity) + heat_rise
 
 
 def _flow_decay(scene: Scene, state: ThermalState) -> float:
