@@ -56,7 +56,6 @@ from roughgas.statistics.sample_sizes import (
 )
 from roughgas.statistics.steady_state import detect_start, is_equilibrated
 
-
 WAIT_LIMIT = 100  # times `equilibrate`: the longest wait for relaxation times of theory
 
 
@@ -267,7 +266,7 @@ def run(
     theory = _theory_of_gas(scene, experiment)
 
     def rows_to(schedule):
-        """Prolong the run to a schedule, and return its samples as columns by name."""
+        """Prolong the run to a schedule; return all its samples as columns by name."""
         simulation.expect(schedule.equilibrate + schedule.measure)
         leg = driven_leg(gas, schedule)
         simulation.follow(0, lambda: gas, lambda _: [leg])
@@ -280,9 +279,9 @@ def run(
         return variables, variables.get("R_ci95_trusted") == YES
 
     def settling_time(wait):
-        """Prolong the run to the end of a wait in T; return the e-fold by theory in its second half.
+        """Prolong the run to the end of a wait, and return theory's e-fold in its second half.
 
-        It is in T.
+        Both are in T.
         """
         rows = rows_to(replace(experiment.schedule, equilibrate=wait, measure=0.0))
         middle, every = len(rows["time"]) // 2, experiment.schedule.sample_every
@@ -312,7 +311,8 @@ def _with_relaxed_start(
         relaxation_time = settling_time(wait)
         required = schedule.relaxation_times * relaxation_time
         if wait >= min(required, longest):
-            variables = {"wait": wait, "wait_relaxations": _quotient_or_infinity(wait, relaxation_time)}
+            relaxations = _quotient_or_infinity(wait, relaxation_time)
+            variables = {"wait": wait, "wait_relaxations": relaxations}
             return replace(schedule, equilibrate=wait), variables
         wait = math.ceil(min(required, 2.0 * wait, longest) / unit) * unit
 
