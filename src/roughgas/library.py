@@ -69,7 +69,7 @@ class Schedule(TypedDict, total=False):
     period: float  #: (steady) of the drive; averages are over whole periods
     replicas: int  #: (cooling) independent runs
     thermalise: float  #: (cooling) as smooth elastic particles, at the start
-    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
+    relaxation_times: float  #: e-folds of theory until R is on its plateau
     plateau: float  #: (cooling) length of the plateau
     target_stderr: float  #: the run is prolonged until R has this standard error
     stages: Sequence[Stage]  #: (stages) the stages of the gas, in place of all lengths above

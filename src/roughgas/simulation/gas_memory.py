@@ -9,6 +9,12 @@ that a criterion in measured memories would select them. Theory computes the mem
 energies and the frequency of contacts, which every run measures well: the criterion then does not
 depend on chance.
 
+A dilute bed that is open above rises with its temperature: its potential energy is T_tr per
+particle, as of two degrees of freedom more, and its contacts become rarer as T_tr^(-1/2). A floor
+that rises at a constant speed, a sawtooth, supplies the weight times this speed at any temperature.
+Both slow its transient down, by up to four. Other floors supply less to a hotter bed, so that its
+transient lasts half as long.
+
 The rates of all relaxation processes add up: contacts (also with friction, or of several species),
 the drag of a bath, and walls. Spin and heat from a wall spread slowly: hits and the diffusion to
 the wall are consecutive steps, whose times add up.
@@ -32,7 +38,6 @@ from roughgas.theory import (
 from roughgas.theory.mixture_states import kick_power, mixture_contact_values
 from roughgas.theory.mixtures import contact_frequencies, rate_matrix
 from roughgas.theory.relaxation import (
-    conduction_time,
     floor_hit_frequency,
     ratio_relaxation,
     slopes,
@@ -50,7 +55,7 @@ class GasMemory(NamedTuple):
     of_R: float  # integrated autocorrelation time of R, 2 over its relaxation rate
     energies: float  # e-fold of the slowest combination of the temperatures
     flow: float  # e-fold of the longest flow, or of the total momentum in a bath
-    settling: float  # e-fold of the slowest transient: of the energies, in a bed with its height
+    settling: float  # e-fold of the slowest transient: of the energies, in a bed as it rises
 
 
 class ThermalState(NamedTuple):
@@ -80,12 +85,15 @@ def gas_memory(
     spin_decay = _mean_spin_decay(scene, state)
     ratio_decay = min(ratio_relaxation(relaxation, gas.heating(), gas.capacity), spin_decay)
     slowest = min(slowest_relaxation(relaxation + gas.accelerated_contacts()), spin_decay)
-    energies = _decay_time(1.0, slowest)
+    settling = slowest
+    if _is_open_bed(scene, state):
+        rising = slowest_relaxation(relaxation - gas.contacts_by_frequency())
+        settling = rising / (1.0 + 2.0 / float(gas.capacity.sum()))
     return GasMemory(
         of_R=_with_total_momentum(_decay_time(2.0, ratio_decay), scene, state),
-        energies=energies,
+        energies=_decay_time(1.0, slowest),
         flow=_decay_time(1.0, _flow_decay(scene, state)),
-        settling=_with_height(energies, scene, state, float(gas.capacity.sum())),
+        settling=_decay_time(1.0, settling),
     )
 
 
@@ -134,13 +142,20 @@ class RateEquations:
     def accelerated_contacts(self) -> np.ndarray:
         """Return the relaxation matrix due to the frequency of contacts, in 1/T.
 
-        The frequency grows as T_tr^(1/2). The matrix, (temperatures, temperatures), is zero if the
-        power of the drive grows likewise and replaces the energy lost in contacts.
+        The matrix, (temperatures, temperatures), is zero if the power of the drive grows as the
+        frequency does, and replaces the energy lost in contacts.
         """
         size = len(self.capacity)
         if not _has_constant_power(self.scene):
             return np.zeros((size, size))
-        frequency_slopes = np.zeros(size)
+        return self.contacts_by_frequency()
+
+    def contacts_by_frequency(self) -> np.ndarray:
+        """Return the change of the losses in contacts with a frequency that grows as T_tr^(1/2).
+
+        Shape (temperatures, temperatures), in 1/T.
+        """
+        frequency_slopes = np.zeros(len(self.capacity))
         frequency_slopes[: len(self.fraction)] = self.fraction / (2.0 * self.fraction @ self.T_tr)
         losses = self._changes(self._temperatures())
         return self.state.frequency * np.outer(losses, frequency_slopes)
@@ -335,20 +350,10 @@ def _with_total_momentum(of_R: float, scene: Scene, state: ThermalState) -> floa
     return (of_R + weight / drag) / (1.0 + weight)
 
 
-def _with_height(energies: float, scene: Scene, state: ThermalState, capacity: float) -> float:
-    """Return the e-fold of a bed's transient (T), from that of its `energies` at constant height.
-
-    A bed is open above. Its potential energy is T_tr per particle, as of two degrees of freedom
-    beside the `capacity`, and its heat rises from the floor: both times add up.
-    """
+def _is_open_bed(scene: Scene, state: ThermalState) -> bool:
+    """Return whether gravity acts along an axis that is open above."""
     gravity = scene.effects.gravity
-    weights = {} if gravity is None else gravity.along
-    upward = [abs(g) for axis, g in weights.items() if math.isinf(state.lengths[axis])]
-    if not upward:
-        return energies
-    T_tr = float(state.T_tr.mean())
-    heat_rise = conduction_time(T_tr, state.frequency, upward[0], len(scene.box))
-    return energies * (1.0 + 2.0 / capacity) + heat_rise
+    return gravity is not None and any(math.isinf(state.lengths[axis]) for axis in gravity.along)
 
 
 def _flow_decay(scene: Scene, state: ThermalState) -> float:

@@ -37,7 +37,14 @@ from roughgas.simulation.energy_averages import (
 )
 from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
 from roughgas.simulation.error_target import SAMPLE_LIMIT, TARGET_KEY, prolonged_until_met
-from roughgas.simulation.experiment import Duration, Experiment, Length, ScheduleSettings, Target
+from roughgas.simulation.experiment import (
+    Duration,
+    Experiment,
+    Length,
+    RelaxationTimes,
+    ScheduleSettings,
+    Target,
+)
 from roughgas.simulation.gas import Gas, timed_sampling
 from roughgas.simulation.gas_memory import GasMemory, ThermalState, drag_rates, gas_memory
 from roughgas.simulation.initial_states import InitialState
@@ -64,16 +71,7 @@ class SteadySettings(ScheduleSettings, frozen=True, kw_only=True, tag="steady"):
 
     equilibrate: Annotated[Length, described("Time before the measurement, in T.")]
     measure: Annotated[Duration, described("Length of the measurement, in T.")]
-    relaxation_times: (
-        Annotated[
-            Length,
-            described(
-                "Relaxation times of theory to wait until R is on its plateau; of a steady state "
-                f"at least `equilibrate`, at most {WAIT_LIMIT} times that."
-            ),
-        ]
-        | None
-    ) = None
+    relaxation_times: RelaxationTimes | None = None
     period: (
         Annotated[
             Duration,
@@ -149,8 +147,8 @@ def check(scene: Scene, experiment: Experiment[SteadySettings]) -> None:
     if sum(_planned_samples(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
         legal = f"hold a whole period, {period:g} T, after the whole ones of equilibrate"
         raise InputError("schedule.measure", measure, legal)
-    if schedule.relaxation_times is not None and not schedule.equilibrate > 0.0:
-        legal = "be a number > 0 beside schedule.relaxation_times, as the gas is looked at after it"
+    if schedule.relaxation_times is not None and not _planned_samples(schedule)[0]:
+        legal = f"be at least schedule.sample_every, {every:g} T, beside schedule.relaxation_times"
         raise InputError("schedule.equilibrate", schedule.equilibrate, legal)
     if schedule.target_stderr is not None and phases(scene, schedule) < REQUIRED_PHASES:
         legal = (

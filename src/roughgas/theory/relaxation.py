@@ -24,7 +24,6 @@ from roughgas.theory.arguments import moment_of_inertia
 
 LOG_T_STEP = 1e-5
 """Step of ln T, for central differences."""
-FIRST_ZERO_OF_J0 = 2.404825557695773
 
 
 def slopes(changes: Callable[[np.ndarray], Any], temperatures: np.ndarray) -> np.ndarray:
@@ -122,21 +121,6 @@ def floor_hit_frequency(T_tr: float, gravity: float) -> float:
     (pi m T_tr/2)^(1/2) in a Maxwellian gas.
     """
     return gravity / float(2.0 * np.sqrt(np.pi * T_tr / 2.0))
-
-
-def conduction_time(T_tr: float, frequency: float, gravity: float, dimension: int = 2) -> float:
-    """Return the e-fold, in T, of the temperature of a dilute bed on a floor of constant T.
-
-    `T_tr` is in m a^2/T^2, `gravity` in a/T^2, and `frequency` nu is the contacts of a particle per
-    T, averaged over the bed. Derived for this package. The density is n = M g/T_tr, with M the
-    particles above, per length of the floor (2D) or area (3D). With the thermal diffusivity k,
-    which is T_tr/nu of disks and 15/8 of that of spheres (Chapman & Cowling, as in
-    `viscous_decay`), heat spreads by dT/dt = d/dM (k n^2 dT/dM), whose k n^2 is proportional to M:
-    the slowest mode is a Bessel function J_0 of M^(1/2), and decays by 1/e in 8/j^2 (T_tr/g)^2/k,
-    j = 2.405 the first zero of J_0.
-    """
-    diffusivity = {2: 1.0, 3: 15.0 / 8.0}[dimension] * T_tr / frequency
-    return 8.0 / FIRST_ZERO_OF_J0**2 * (T_tr / gravity) ** 2 / diffusivity
 
 
 def viscous_decay(T_tr: float, frequency: float, wavelength: float) -> float:
