@@ -26,7 +26,8 @@ LEGEND_ROOM = 0.4  # below the data, over their range
 PACKING_MARKERS = ("X", "P", "d")
 TOTAL_ERROR = np.sqrt(2.0)  # over the deviation, which equals the statistical error
 RESOLVED = 2.0  # standard errors: smaller deviations are not drawn
-PAPER_SEEDS = 4
+PAPER_SEEDS, LEAST_WAIT = 4, 500.0  # T
+LAST_E_FOLD = 5.0
 TIME_MARKERS = {"autocorrelation_time": "^", "settling": "v"}
 """Markers of times along the lower and the upper axis."""
 BARS: Style = {"elinewidth": 0.8, "capsize": 1.5}
@@ -161,29 +162,35 @@ def draw_bias(axes: Axes, data: xr.Dataset) -> None:
             position = ([float(bed[name])], [height])
             across = {"transform": axes.get_xaxis_transform(), "clip_on": False, "zorder": 4}
             axes.plot(*position, TIME_MARKERS[name], color=look.colour, ms=6, **across)
+    for name, label in (
+        ("autocorrelation_time", "memory of $R$ (below)"),
+        ("settling", "e-fold (above)"),
+    ):
+        axes.plot([], [], TIME_MARKERS[name], color=GREY, ms=6, label=label)
+    axes.axvline(LEAST_WAIT, color=GREY, lw=0.8, ls=":", label="least wait, lean")
     low, high = axes.get_ylim()
-    axes.set(xscale="log", ylim=(low, high + LEGEND_ROOM * (high - low)))
+    axes.set(xscale="log", ylim=(low - LEGEND_ROOM * (high - low), high))
     axes.set(xlabel="wait / $T$", ylabel=r"bias of $R$ / error of the paper's mean")
-    axes.legend(loc="upper right", title="below: memory of $R$; above: e-fold by theory")
+    axes.legend(loc="lower center", ncols=2)
 
 
 def draw_lack(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the lack of translational energy against time, and the slope of theory's e-fold."""
+    """Draw the lack of translational energy against the time in e-folds of theory, log-linear."""
     for look, bed in zip(LINE_STYLES, slices_along(data, "point"), strict=False):
         lack, bar = _value_and_error(bed, "lack")
-        known = lack > RESOLVED * bar
-        time = 1.05 * bed.wait.values
-        style: Style = {"color": look.colour, "marker": look.marker, "ls": "none"}
-        axes.errorbar(time[known], lack[known], bar[known], markersize=3.6, **style, **BARS)
-        settling = float(bed.settling)
-        start = np.interp(-0.3, -lack[known], time[known])  # where the lack is 0.3
-        line = start + np.array([0.0, 2.5]) * settling
-        label = f"{_bed_name(bed)}: {settling:.3g} $T$, measured {table_cell(bed, 'e_fold')} $T$"
-        axes.plot(line, 0.3 * np.exp(-(line - start) / settling), color=look.colour, label=label)
-    axes.set(xlabel="time since the start / $T$", **LOG)
+        shown = (lack > RESOLVED * bar) & (bed.time.values < LAST_E_FOLD * float(bed.settling))
+        time = bed.time.values[shown] / float(bed.settling)
+        label = f"{_bed_name(bed)}: {float(bed.settling):.3g} $T$"
+        style: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "label": label}
+        axes.errorbar(time, lack[shown], bar[shown], markersize=3.6, **style, **BARS)
+    decay = np.array([0.0, LAST_E_FOLD])
+    axes.plot(decay, np.exp(-decay), color=THEORY, lw=0.9, label="slope of theory", zorder=0)
+    axes.set(
+        xlabel="time since the start / e-fold by theory", yscale="log", xlim=(-0.2, LAST_E_FOLD)
+    )
     axes.set_ylabel(r"$1 - E_\mathrm{trans}/$settled $E_\mathrm{trans}$")
-    axes.set_ylim(bottom=axes.get_ylim()[0] / 30)  # room for the legend
-    axes.legend(loc="lower left", title="e-fold by theory (lines)", alignment="left")
+    axes.set_ylim(np.exp(-LAST_E_FOLD) / 20.0, 2.0)  # room for the legend
+    axes.legend(loc="lower left", title="e-folds by theory:", alignment="left")
 
 
 def paper_error(bed: xr.Dataset) -> float:

@@ -35,7 +35,7 @@ from roughgas.tasks import (
 VARIABLES = Path(__file__).with_name("variables.yaml")
 INSTANT = 0.1  # length of a window that counts as an instant, over the time since the start
 FITTED = 0.05, 0.4
-"""Range of the lack of E_trans in which its e-fold is fitted."""
+"""Range of the lack of E_trans in which its e-fold is fitted, until it first falls below."""
 
 
 class Series(NamedTuple):
@@ -140,8 +140,9 @@ def memory_of_settled(scene, columns: NamedValues, experiment: Experiment[Any]) 
 def combine(task_results: Mapping[str, xr.Dataset], settings: OwnSettings) -> xr.Dataset:
     """Return the biases after each wait, and measured and theoretical times, from all tasks."""
     points, waits = settings["points"], np.array(settings["waits"], float)
-    rows = [_bed(task_results[task_name(point)], waits) for point in points]
-    values = stack_rows(rows) | {"wait": waits}
+    times = waits + 0.5 * np.array([instant(wait) for wait in waits])
+    rows = [_bed(task_results[task_name(point)], times) for point in points]
+    values = stack_rows(rows) | {"wait": waits, "time": times}
     for key in ("r", "beta"):
         values[key] = [float(point[key]) for point in points]
     for key in ("settled", "length", "runs"):
@@ -150,11 +151,10 @@ def combine(task_results: Mapping[str, xr.Dataset], settings: OwnSettings) -> xr
     return dataset(read_variables(VARIABLES, "waiting"), values, **attributes)
 
 
-def _bed(data: xr.Dataset, waits: np.ndarray) -> NamedValues:
-    """Return the variables of a bed by name."""
+def _bed(data: xr.Dataset, times: np.ndarray) -> NamedValues:
+    """Return the variables of a bed by name; `times` (waits,) are those of E_trans, in T."""
     biases = [mean_estimate(column) for column in data.R_bias.values.T]
     lack, lack_stderr = jackknife(data.E_early.values, data.E_trans.values, lack_of_energy)
-    times = waits + 0.5 * np.array([instant(wait) for wait in waits])
     e_fold, e_fold_stderr = jackknife(
         data.E_early.values,
         data.E_trans.values,
@@ -183,9 +183,13 @@ def lack_of_energy(early: np.ndarray, settled: np.ndarray) -> np.ndarray:
 
 
 def fitted_e_fold(times: np.ndarray, lack: np.ndarray) -> float:
-    """Return the e-fold of a lack that decays, where it is in FITTED; NaN for fewer than two."""
-    inside = (FITTED[0] < lack) & (lack < FITTED[1])
-    if np.count_nonzero(inside) < 2:
+    """Return the e-fold of a lack that decays, while it is in FITTED; NaN for fewer than two times.
+
+    `times` and `lack` are (waits,). Noise after the first time below FITTED has no influence.
+    """
+    last = np.argmax(lack < FITTED[0]) if (lack < FITTED[0]).any() else len(lack)
+    inside = np.flatnonzero(lack[:last] < FITTED[1])
+    if len(inside) < 2:
         return math.nan
     return float(-1.0 / np.polyfit(times[inside], np.log(lack[inside]), 1)[0])
 
@@ -203,7 +207,7 @@ def table(data: xr.Dataset) -> str:
     rows, biases = [], []
     for bed in slices_along(data, "point"):
         name = f"r = {float(bed.r):g}, β = {float(bed.beta):g}".replace("-", "\N{MINUS SIGN}")
-        memory, e_fold = (table_cell(bed, key, ".3g") for key in ("autocorrelation_time", "e_fold"))
+        memory, e_fold = (table_cell(bed, key) for key in ("autocorrelation_time", "e_fold"))
         times = [memory, f"{float(bed.memory):.3g}", e_fold, f"{float(bed.settling):.3g}"]
         rows.append(
             [
