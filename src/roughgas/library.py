@@ -161,9 +161,9 @@ def simulate(
         with their settings, or with a function that returns a number or an array for a frame
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
-        ``"paper"``, ``"quick"`` (the paper's experiments, with errors three times as wide) or
-        ``"small"`` (a quarter of the particles, and short); by default the configuration's own
-        ``scale``, ``"paper"``.
+        ``"paper"``, ``"lean"`` (with shorter waits), ``"quick"`` (the paper's experiments, with
+        errors three times as wide) or ``"small"`` (a quarter of the particles, and short); by
+        default the configuration's own ``scale``, ``"paper"``.
     config
         Path of a configuration to use instead of the packaged one.
     trackers
