@@ -1,11 +1,14 @@
 """Waits for relaxation times of theory: their lengths, and runs that wait."""
 
+import json
 import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from brute_force import begin, settings
 from raw import build, run_point
+from tests.entry import main
 
 from roughgas import config
 from roughgas.base import merged
@@ -58,6 +61,19 @@ def test_a_wait_is_never_shorter_than_the_schedule_and_says_where_it_is_cut(monk
     monkeypatch.setattr(steady, "WAIT_LIMIT", 2)
     cut = variables_of(SHEARED, relaxation_times=1e6)
     assert cut["wait"] == 60.0 and cut["wait_relaxations"] < 5.0
+
+
+def test_a_point_shows_its_wait(tmp_path, capsys):
+    """Its dataset has the wait as variables, its attributes the settings."""
+    output = tmp_path / "point.nc"
+    waiting = merged(SHEARED, {"schedule": {"relaxation_times": 3}})
+    point = ["gas", "--r=0.9", "--beta=0", "--settings", json.dumps(waiting)]
+    assert main(["run", *point, "-o", str(output)]) == 0
+    assert main(["show", str(output)]) == 0
+    with xr.open_dataset(output) as dataset:
+        assert json.loads(dataset.attrs["experiment_json"])["schedule"]["relaxation_times"] == 3
+        wait, e_folds = float(dataset.wait), float(dataset.wait_relaxations)
+    assert f"wait           {wait:g} T, {e_folds:.3g} e-folds of theory" in capsys.readouterr().out
 
 
 def wait_by(settling_time, **changes):
