@@ -167,7 +167,8 @@ def draw_bias(axes: Axes, data: xr.Dataset) -> None:
         ("settling", "e-fold (above)"),
     ):
         axes.plot([], [], TIME_MARKERS[name], color=GREY, ms=6, label=label)
-    axes.axvline(LEAST_WAIT, color=GREY, lw=0.8, ls=":", label="least wait, lean")
+    floor = LEGEND_ROOM / (1.0 + LEGEND_ROOM)  # of the data, in shares of the axis
+    axes.axvline(LEAST_WAIT, floor, color=GREY, lw=0.8, ls=":", label="least wait, lean")
     low, high = axes.get_ylim()
     axes.set(xscale="log", ylim=(low - LEGEND_ROOM * (high - low), high))
     axes.set(xlabel="wait / $T$", ylabel=r"bias of $R$ / error of the paper's mean")
@@ -180,11 +181,11 @@ def draw_lack(axes: Axes, data: xr.Dataset) -> None:
         lack, bar = _value_and_error(bed, "lack")
         shown = (lack > RESOLVED * bar) & (bed.time.values < LAST_E_FOLD * float(bed.settling))
         time = bed.time.values[shown] / float(bed.settling)
-        label = f"{_bed_name(bed)}: {float(bed.settling):.3g} $T$"
+        label = f"{_bed_name(bed)}: {float(bed.settling):.4g} $T$"
         style: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "label": label}
         axes.errorbar(time, lack[shown], bar[shown], markersize=3.6, **style, **BARS)
     decay = np.array([0.0, LAST_E_FOLD])
-    axes.plot(decay, np.exp(-decay), color=THEORY, lw=0.9, label="slope of theory", zorder=0)
+    axes.plot(decay, np.exp(-decay), color=THEORY, lw=0.9, label="exponential", zorder=0)
     axes.set(
         xlabel="time since the start / e-fold by theory", yscale="log", xlim=(-0.2, LAST_E_FOLD)
     )

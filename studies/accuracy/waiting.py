@@ -207,25 +207,13 @@ def table(data: xr.Dataset) -> str:
     rows, biases = [], []
     for bed in slices_along(data, "point"):
         name = f"r = {float(bed.r):g}, β = {float(bed.beta):g}".replace("-", "\N{MINUS SIGN}")
-        memory, e_fold = (table_cell(bed, key) for key in ("autocorrelation_time", "e_fold"))
-        times = [memory, f"{float(bed.memory):.3g}", e_fold, f"{float(bed.settling):.3g}"]
-        rows.append(
-            [
-                name,
-                table_cell(bed, "R"),
-                *(f"{time} T" for time in times),
-                f"{float(bed.seconds):.0f} s",
-            ]
-        )
-        biases.append(
-            [
-                name,
-                *(
-                    table_cell(at, "R_bias") if np.isfinite(at.R_bias) else ""
-                    for at in slices_along(bed, "wait")
-                ),
-            ]
-        )
+        e_fold = f"{table_cell(bed, 'e_fold')} T" if np.isfinite(bed.e_fold) else "not known"
+        memory, cpu = f"{table_cell(bed, 'autocorrelation_time')} T", f"{float(bed.seconds):.0f} s"
+        theory = [f"{float(bed[key]):.4g} T" for key in ("memory", "settling")]
+        rows.append([name, table_cell(bed, "R"), memory, theory[0], e_fold, theory[1], cpu])
+        known = bed.isel(wait=np.flatnonzero(np.isfinite(bed.R_bias)))
+        cells = [table_cell(after, "R_bias") for after in slices_along(known, "wait")]
+        biases.append([name, *cells, *[""] * (data.sizes["wait"] - len(cells))])
     waits = ["bed", *(f"{wait:g} T" for wait in data.wait.values)]
     return (
         f"## Waits of beds\n\n{markdown(head, rows)}\n"
