@@ -27,7 +27,9 @@ ROOT = DOCS.parent
 EVIDENCE = "<!-- evidence: figures/evidence.csv -->"
 MOVIES = "<!-- movies: figures/movies/*.gif -->"
 PAGES = DOCS / "_build" / "pages"
-EXPLORE = [ROOT / "results" / scale / "explore.html" for scale in ("paper", "quick", "small")]
+EXPLORE = [
+    ROOT / "results" / scale / "explore.html" for scale in ("paper", "lean", "quick", "small")
+]
 EXPLORE_LINK = re.compile(r'<a href="explore\.html">(.*?)</a>', re.DOTALL)
 INDEX, README = DOCS / "index.md", ROOT / "README.md"
 LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")

@@ -69,7 +69,7 @@ class Schedule(TypedDict, total=False):
     period: float  #: (steady) of the drive; averages are over whole periods
     replicas: int  #: (cooling) independent runs
     thermalise: float  #: (cooling) as smooth elastic particles, at the start
-    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
+    relaxation_times: float  #: e-folds of theory until R is on its plateau
     plateau: float  #: (cooling) length of the plateau
     target_stderr: float  #: the run is prolonged until R has this standard error
     stages: Sequence[Stage]  #: (stages) the stages of the gas, in place of all lengths above
@@ -161,9 +161,9 @@ def simulate(
         with their settings, or with a function that returns a number or an array for a frame
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
-        ``"paper"``, ``"quick"`` (the paper's experiments, with errors three times as wide) or
-        ``"small"`` (a quarter of the particles, and short); by default the configuration's own
-        ``scale``, ``"paper"``.
+        ``"paper"``, ``"lean"`` (with shorter waits), ``"quick"`` (the paper's experiments, with
+        errors three times as wide) or ``"small"`` (a quarter of the particles, and short); by
+        default the configuration's own ``scale``, ``"paper"``.
     config
         Path of a configuration to use instead of the packaged one.
     trackers

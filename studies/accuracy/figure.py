@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LINE_STYLES, THEORY, LineStyle, Style
 from roughgas.statistics.fits import power_law
-from roughgas.tasks import table_cell
+from roughgas.tasks import slices_along, table_cell
 
 Panel = tuple[Callable[[Axes, xr.Dataset], None], str]
 SIZE = (7.0, 4.2)  # inches, of two panels
@@ -26,6 +26,10 @@ LEGEND_ROOM = 0.4  # below the data, over their range
 PACKING_MARKERS = ("X", "P", "d")
 TOTAL_ERROR = np.sqrt(2.0)  # over the deviation, which equals the statistical error
 RESOLVED = 2.0  # standard errors: smaller deviations are not drawn
+PAPER_SEEDS, LEAST_WAIT = 4, 500.0  # T
+LAST_E_FOLD = 5.0
+TIME_MARKERS = {"autocorrelation_time": "^", "settling": "v"}
+"""Markers of times along the lower and the upper axis."""
 BARS: Style = {"elinewidth": 0.8, "capsize": 1.5}
 THIN: Style = {"ls": "none", "elinewidth": 0.9}
 LOG: Style = {"xscale": "log", "yscale": "log"}
@@ -38,7 +42,12 @@ def draw(statistical: xr.Dataset, models: xr.Dataset) -> Figure:
 
 def draw_limits(discretisation: xr.Dataset, models: xr.Dataset) -> Figure:
     """Return the figure of springs and time steps, and of deviations from Maxwellian theory."""
-    return _in_panels(PANELS[2:], discretisation, models)
+    return _in_panels(PANELS[2:4], discretisation, models)
+
+
+def draw_waiting(waiting: xr.Dataset) -> Figure:
+    """Return the figure of beds that have not settled: bias of R, and lack of energy."""
+    return _in_panels(PANELS[4:], waiting, waiting)
 
 
 def _in_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
@@ -47,7 +56,7 @@ def _in_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
     all_axes = figure.subplots(1, len(panels))
     for axes, (panel, title), dataset in zip(all_axes, panels, data, strict=True):
         panel(axes, dataset)
-        r, beta = (float(dataset.attrs[key]) for key in ("r", "beta"))
+        r, beta = (float(dataset.attrs.get(key, np.nan)) for key in ("r", "beta"))
         point = rf"$r = {r:g}$, $\beta = {beta:g}$"
         axes.set_title(title.format(point), loc="left", fontsize=8.5)
     return figure
@@ -141,11 +150,68 @@ def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
     axes.legend(loc="lower left")
 
 
+def draw_bias(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the bias of R against the wait, over the standard error of the paper's mean."""
+    axes.axhspan(-1.0, 1.0, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
+    for look, bed in zip(LINE_STYLES, slices_along(data, "point"), strict=False):
+        yardstick = paper_error(bed)
+        bias, bar = (column / yardstick for column in _value_and_error(bed, "R_bias"))
+        style: Style = {"color": look.colour, "marker": look.marker, "ls": "none"}
+        axes.errorbar(bed.wait, bias, bar, markersize=3.6, label=_bed_name(bed), **style, **BARS)
+        for name, height in (("autocorrelation_time", 0.0), ("settling", 1.0)):
+            position = ([float(bed[name])], [height])
+            across = {"transform": axes.get_xaxis_transform(), "clip_on": False, "zorder": 4}
+            axes.plot(*position, TIME_MARKERS[name], color=look.colour, ms=6, **across)
+    for name, label in (
+        ("autocorrelation_time", "memory of $R$ (below)"),
+        ("settling", "e-fold (above)"),
+    ):
+        axes.plot([], [], TIME_MARKERS[name], color=GREY, ms=6, label=label)
+    floor = LEGEND_ROOM / (1.0 + LEGEND_ROOM)  # of the data, in shares of the axis
+    axes.axvline(LEAST_WAIT, floor, color=GREY, lw=0.8, ls=":", label="least wait, lean")
+    low, high = axes.get_ylim()
+    axes.set(xscale="log", ylim=(low - LEGEND_ROOM * (high - low), high))
+    axes.set(xlabel="wait / $T$", ylabel=r"bias of $R$ / error of the paper's mean")
+    axes.legend(loc="lower center", ncols=2)
+
+
+def draw_lack(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the lack of translational energy against the time in e-folds of theory, log-linear."""
+    for look, bed in zip(LINE_STYLES, slices_along(data, "point"), strict=False):
+        lack, bar = _value_and_error(bed, "lack")
+        shown = (lack > RESOLVED * bar) & (bed.time.values < LAST_E_FOLD * float(bed.settling))
+        time = bed.time.values[shown] / float(bed.settling)
+        label = f"{_bed_name(bed)}: {float(bed.settling):.4g} $T$"
+        style: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "label": label}
+        axes.errorbar(time, lack[shown], bar[shown], markersize=3.6, **style, **BARS)
+    decay = np.array([0.0, LAST_E_FOLD])
+    axes.plot(decay, np.exp(-decay), color=THEORY, lw=0.9, label="exponential", zorder=0)
+    axes.set(
+        xlabel="time since the start / e-fold by theory", yscale="log", xlim=(-0.2, LAST_E_FOLD)
+    )
+    axes.set_ylabel(r"$1 - E_\mathrm{trans}/$settled $E_\mathrm{trans}$")
+    axes.set_ylim(np.exp(-LAST_E_FOLD) / 20.0, 2.0)  # room for the legend
+    axes.legend(loc="lower left", title="e-folds by theory:", alignment="left")
+
+
+def paper_error(bed: xr.Dataset) -> float:
+    """Return the standard error of R of the paper's mean at a bed, from the scatter of its runs."""
+    per_run = float(bed.R_stderr) * np.sqrt(float(bed.runs))
+    length = float(bed.length - bed.settled) / bed.attrs["measure"]
+    return per_run * np.sqrt(length / PAPER_SEEDS)
+
+
+def _bed_name(bed: xr.Dataset) -> str:
+    return rf"$r = {float(bed.r):g}$, $\beta = {float(bed.beta):g}$"
+
+
 PANELS: tuple[Panel, ...] = (
     (draw_statistical, "(a) noise, {}"),
     (draw_models, "(b) models of a cooling gas, {}"),
     (draw_discretisation, "(c) springs and time steps, {}"),
     (draw_map, "(d) what Maxwellian theory misses"),
+    (draw_bias, "(e) bias of $R$ after a wait, beds"),
+    (draw_lack, "(f) beds from their start"),
 )
 
 

@@ -42,7 +42,7 @@ def completions(line, script):
         ("roughgas run spheres.c", {"spheres.cooling_spheres"}),
         (f"roughgas run {BED}/mu0.0", {f"{BED}/mu0.0{k}" for k in "13"}),
         ("roughgas experiments spheres.c", {"spheres.cooling_spheres"}),
-        ("roughgas movie cooling --scale ", {"paper", "quick", "long", "small"}),
+        ("roughgas movie cooling --scale ", {"paper", "lean", "quick", "long", "small"}),
         ("roughgas run cooling --config no.yaml --scale ", set()),
     ],
 )

@@ -54,6 +54,7 @@ RUNS = {
         },
     },
     "flow": DRIVEN | {"particles": 100, "box": [40, 40]},
+    "waiting": DRIVEN | {"schedule": DRIVEN["schedule"] | {"relaxation_times": 3}},
     "target": DRIVEN | {"schedule": DRIVEN["schedule"] | TARGET},
 }
 

@@ -242,6 +242,21 @@ DISCRETISATION = SmallStudy(
     frozenset({(6,)}),
 )
 
+WAITING = SmallStudy(
+    {
+        "seed": 1,
+        "waits": [1, 2, 4, 8],
+        "measure": 8,
+        "points": [
+            {"r": "0.99", "beta": "-0.9", "runs": 3, "settled": 20, "length": 40},
+            {"r": "0.9", "beta": "0", "runs": 3, "settled": 10, "length": 20},
+        ],
+    },
+    {"r = 0.99, β = −0.9": 2, "r = 0.9, β = 0": 2},
+    "waiting-r0.9-beta0",
+    {"vibrated": scene("bed", 20, [10, "open"]) | {"schedule": STEADY | {"period": 1}}},
+)
+
 COVERAGE = SmallStudy(
     {
         "seed": 1,
@@ -272,6 +287,7 @@ SMALL_STUDIES = {
     "accuracy.statistical": STATISTICAL,
     "accuracy.models": MODELS,
     "accuracy.discretisation": DISCRETISATION,
+    "accuracy.waiting": WAITING,
     "coverage.coverage": COVERAGE,
 }
 """By the name of the study, or STUDY.MODULE."""

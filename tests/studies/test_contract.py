@@ -32,7 +32,7 @@ from roughgas.show.style import PARAMETERS
 from roughgas.tasks import read_variables, running
 
 CHEAP = {"profiles", "finite_size", "clustering", "coverage.coverage"}
-CHEAP |= {"accuracy.statistical", "accuracy.models"}
+CHEAP |= {"accuracy.statistical", "accuracy.models", "accuracy.waiting"}
 """Studies whose small tasks take a second or two; the others compile kernels of their own."""
 CPU_TIMES = re.compile("seconds|equilibration")
 """Names of variables that differ from run to run."""

@@ -34,16 +34,18 @@ POINTS = REDUCED | {"seeds", "point"}
 COMPILED = POINTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
 FILM = {"clustering", "combine", "study_movie", "study_page"}
-ACCURACY = {"accuracy", "accuracy_limits", "combine", "document"}
+ACCURACY_FIGURES = {"accuracy", "accuracy_limits", "accuracy_waiting"}
+ACCURACY = ACCURACY_FIGURES | {"combine", "claims", "document"}
 COVERAGE = {"coverage", "combine", "document"}
 OF_TASKS = {"combine", "profiles", "finite_size", "runaway", "exact"}
 OF_DSMC = {"exact", "finite_size", "runaway", "megias_santos"}
 OF_DSMC |= {"combine", "claims", "study_page"}
-STUDIES = ACCURACY | COVERAGE | OF_TASKS | {"statistical", "models", "discretisation"}
+STUDIES = ACCURACY | COVERAGE | OF_TASKS
+STUDIES |= {"statistical", "models", "discretisation", "waiting"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 OF_NO_PLATEAU = {"clustering", "discretisation", "exact", "profiles", "study_movie"}
 PAPER_FIGURE = "../../studies/paper/figure.py"
-DRAWN_OF_TASKS = OF_TASKS_ALONE | {"accuracy", "accuracy_limits", "coverage"}
+DRAWN_OF_TASKS = OF_TASKS_ALONE | {*ACCURACY_FIGURES, "coverage"}
 EDITED = {  # file of the package: rules, figures and studies that rerun after an edit
     "statistics/steady_state.py": SIMULATED - OF_NO_PLATEAU,
     "theory/prediction.py": REDUCED | DRAWN_OF_TASKS | {"study_movie", "combine"},  # of exact

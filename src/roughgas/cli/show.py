@@ -264,6 +264,11 @@ def _measurement_rows(point: Dataset) -> Iterator[list[str]]:
             unit = unit_of(point[name].attrs)
             yield [name, f"{_estimate(point, name)} {unit}, per degree of freedom{time_note}"]
     yield ["steady state", _steady_text(point)]
+    if "wait" in point:
+        yield [
+            "wait",
+            f"{float(point.wait):g} T, {float(point.wait_relaxations):.3g} e-folds of theory",
+        ]
     share = float(point.get("contact_time_fraction", 0.0))
     if share > 0.0:
         note = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"

@@ -35,10 +35,10 @@ from roughgas.scene.settings import Box, Neighbours, Particles, SpinTemperature
 
 RESERVED = frozenset(
     """
-    accuracy accuracy_limits article article_pdf by_default catalogue claims codemeta combine
-    compile_kernel config coverage crate deposit document effective_config everything evidence
-    evidence_long explore explore_extensions extensions family fig1a fig1b fig2a fig2b figure
-    figure_of_evidence figures front hard_cases hard_cases_chaos hard_cases_collapse
+    accuracy accuracy_limits accuracy_waiting article article_pdf by_default catalogue claims
+    codemeta combine compile_kernel config coverage crate deposit document effective_config
+    everything evidence evidence_long explore explore_extensions extensions family fig1a fig1b fig2a
+    fig2b figure figure_of_evidence figures front hard_cases hard_cases_chaos hard_cases_collapse
     hard_cases_cooling living living_page long_table movie movies numbers page page_of_evidence
     paper papers picture_for_talks pictures plot point quoted_by_documentation quoted_numbers reduce
     report rows_of_evidence run_times run_times_extensions study_evidence study_movie study_page

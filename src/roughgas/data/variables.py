@@ -32,6 +32,7 @@ GRID_PLACEHOLDER = "grid"
 
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with `target_stderr`"
+WAIT = "driven gas with `relaxation_times`"
 FLOWING = "sheared gas, or in a bath whose medium rotates"
 CONTACT = "where the contact-time model acts"
 STATE_KEPT = "with `keep_state`"
@@ -248,6 +249,10 @@ POINT = {
     ),
     "flow_relaxation": Variable(
         "e-fold of the longest flow, or of the momentum in a bath, by theory", TIME, when=(DRIVEN,)
+    ),
+    "wait": Variable("wait that theory requires before the measurement", TIME, when=(WAIT,)),
+    "wait_relaxations": Variable(
+        "this wait in e-folds of the slowest transient, by theory as it ends", when=(WAIT,)
     ),
     "target_met": Variable(
         "whether R_stderr reached the target_stderr; -1 where there is too little to tell",

@@ -26,7 +26,14 @@ from roughgas.simulation.energy_averages import (
 )
 from roughgas.simulation.energy_balance import energy_exchange
 from roughgas.simulation.error_target import TARGET_KEY, prolonged_until_met
-from roughgas.simulation.experiment import Duration, Experiment, Length, ScheduleSettings, Target
+from roughgas.simulation.experiment import (
+    Duration,
+    Experiment,
+    Length,
+    RelaxationTimes,
+    ScheduleSettings,
+    Target,
+)
 from roughgas.simulation.gas import PRESENT_SAMPLE, Gas, count, thermalisation_sampling
 from roughgas.simulation.initial_states import InitialState
 from roughgas.simulation.leg import Changes, Leg
@@ -48,9 +55,7 @@ class CoolingSettings(ScheduleSettings, frozen=True, kw_only=True, tag="cooling"
         Length,
         described("Collisions per particle as smooth elastic disks before cooling begins."),
     ]
-    relaxation_times: Annotated[
-        Length, described("Relaxation times of theory to wait until R is on its plateau.")
-    ]
+    relaxation_times: RelaxationTimes
     plateau: Annotated[Duration, described("Collisions per particle on the plateau.")]
     target_stderr: Target | None = None
 

@@ -17,6 +17,14 @@ Length = Annotated[float, number("[0, 1e+09]")]
 """A length of time, possibly zero, in T or in collisions per particle."""
 Duration = Annotated[float, number("(0, 1e+09]")]
 """A length of time, in T or in collisions per particle."""
+RelaxationTimes = Annotated[
+    float,
+    number(
+        "[0, 1e+09]",
+        "Relaxation times of theory to wait until R is on its plateau; of a steady state at least "
+        "`equilibrate`, at most 100 times that.",
+    ),
+]
 Target = Annotated[
     float,
     number(

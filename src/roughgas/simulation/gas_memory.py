@@ -9,6 +9,12 @@ that a criterion in measured memories would select them. Theory computes the mem
 energies and the frequency of contacts, which every run measures well: the criterion then does not
 depend on chance.
 
+A dilute bed that is open above rises with its temperature: its potential energy is T_tr per
+particle, as of two degrees of freedom more, and its contacts become rarer as T_tr^(-1/2). A floor
+that rises at a constant speed, a sawtooth, supplies the weight times this speed at any temperature.
+Both slow its transient down, by up to four. Other floors supply less to a hotter bed, so that its
+transient lasts half as long.
+
 The rates of all relaxation processes add up: contacts (also with friction, or of several species),
 the drag of a bath, and walls. Spin and heat from a wall spread slowly: hits and the diffusion to
 the wall are consecutive steps, whose times add up.
@@ -49,6 +55,7 @@ class GasMemory(NamedTuple):
     of_R: float  # integrated autocorrelation time of R, 2 over its relaxation rate
     energies: float  # e-fold of the slowest combination of the temperatures
     flow: float  # e-fold of the longest flow, or of the total momentum in a bath
+    settling: float  # e-fold of the slowest transient: of the energies, in a bed as it rises
 
 
 class ThermalState(NamedTuple):
@@ -72,16 +79,21 @@ def gas_memory(
     """
     measured = np.isfinite(state.T_tr).all() and (state.T_tr > 0.0).all()
     if not (measured and state.frequency > 0.0):
-        return GasMemory(math.inf, math.inf, math.inf)
+        return GasMemory(math.inf, math.inf, math.inf, math.inf)
     gas = RateEquations(scene, state, mixture, packing)
     relaxation = gas.contacts() + gas.walls() + np.diag(gas.speed_gain_rates() - gas.drag_rates())
     spin_decay = _mean_spin_decay(scene, state)
     ratio_decay = min(ratio_relaxation(relaxation, gas.heating(), gas.capacity), spin_decay)
     slowest = min(slowest_relaxation(relaxation + gas.accelerated_contacts()), spin_decay)
+    settling = slowest
+    if _is_open_bed(scene, state):
+        rising = slowest_relaxation(relaxation - gas.contacts_by_frequency())
+        settling = rising / (1.0 + 2.0 / float(gas.capacity.sum()))
     return GasMemory(
         of_R=_with_total_momentum(_decay_time(2.0, ratio_decay), scene, state),
         energies=_decay_time(1.0, slowest),
         flow=_decay_time(1.0, _flow_decay(scene, state)),
+        settling=_decay_time(1.0, settling),
     )
 
 
@@ -130,13 +142,20 @@ class RateEquations:
     def accelerated_contacts(self) -> np.ndarray:
         """Return the relaxation matrix due to the frequency of contacts, in 1/T.
 
-        The frequency grows as T_tr^(1/2). The matrix, (temperatures, temperatures), is zero if the
-        power of the drive grows likewise and replaces the energy lost in contacts.
+        The matrix, (temperatures, temperatures), is zero if the power of the drive grows as the
+        frequency does, and replaces the energy lost in contacts.
         """
         size = len(self.capacity)
         if not _has_constant_power(self.scene):
             return np.zeros((size, size))
-        frequency_slopes = np.zeros(size)
+        return self.contacts_by_frequency()
+
+    def contacts_by_frequency(self) -> np.ndarray:
+        """Return the change of the losses in contacts with a frequency that grows as T_tr^(1/2).
+
+        Shape (temperatures, temperatures), in 1/T.
+        """
+        frequency_slopes = np.zeros(len(self.capacity))
         frequency_slopes[: len(self.fraction)] = self.fraction / (2.0 * self.fraction @ self.T_tr)
         losses = self._changes(self._temperatures())
         return self.state.frequency * np.outer(losses, frequency_slopes)
@@ -329,6 +348,12 @@ def _with_total_momentum(of_R: float, scene: Scene, state: ThermalState) -> floa
     T_bath = bath.noise / (1.0 - bath.velocity_factor**2)
     weight = (T_bath / float(state.T_tr.mean())) ** 2 / state.particles
     return (of_R + weight / drag) / (1.0 + weight)
+
+
+def _is_open_bed(scene: Scene, state: ThermalState) -> bool:
+    """Return whether gravity acts along an axis that is open above."""
+    gravity = scene.effects.gravity
+    return gravity is not None and any(math.isinf(state.lengths[axis]) for axis in gravity.along)
 
 
 def _flow_decay(scene: Scene, state: ThermalState) -> float:

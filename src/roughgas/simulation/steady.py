@@ -10,6 +10,7 @@ from functools import partial
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
 from roughgas.base import InputError, NamedValues
 from roughgas.base.fields import described
@@ -35,8 +36,15 @@ from roughgas.simulation.energy_averages import (
     vertical_share,
 )
 from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
-from roughgas.simulation.error_target import TARGET_KEY, prolonged_until_met
-from roughgas.simulation.experiment import Duration, Experiment, Length, ScheduleSettings, Target
+from roughgas.simulation.error_target import SAMPLE_LIMIT, TARGET_KEY, prolonged_until_met
+from roughgas.simulation.experiment import (
+    Duration,
+    Experiment,
+    Length,
+    RelaxationTimes,
+    ScheduleSettings,
+    Target,
+)
 from roughgas.simulation.gas import Gas, timed_sampling
 from roughgas.simulation.gas_memory import GasMemory, ThermalState, drag_rates, gas_memory
 from roughgas.simulation.initial_states import InitialState
@@ -55,12 +63,15 @@ from roughgas.statistics.sample_sizes import (
 )
 from roughgas.statistics.steady_state import detect_start, is_equilibrated
 
+WAIT_LIMIT = 100  # times `equilibrate`: the longest wait for relaxation times of theory
+
 
 class SteadySettings(ScheduleSettings, frozen=True, kw_only=True, tag="steady"):
     """A driven gas in a steady state; lengths are in T."""
 
     equilibrate: Annotated[Length, described("Time before the measurement, in T.")]
     measure: Annotated[Duration, described("Length of the measurement, in T.")]
+    relaxation_times: RelaxationTimes | None = None
     period: (
         Annotated[
             Duration,
@@ -87,7 +98,10 @@ REQUIRED_FOR_MEANS = MINIMUM_SAMPLE_SIZE._replace(memories=96)
 
 
 def length(scene: Scene, experiment: Experiment[SteadySettings]) -> float:
-    """Return the simulated time of a point, equilibration and measurement, in T."""
+    """Return the simulated time of a point, equilibration and measurement, in T.
+
+    Relaxation times of theory may prolong the equilibration.
+    """
     schedule = experiment.schedule
     return schedule.equilibrate + schedule.measure
 
@@ -133,6 +147,9 @@ def check(scene: Scene, experiment: Experiment[SteadySettings]) -> None:
     if sum(_planned_samples(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
         legal = f"hold a whole period, {period:g} T, after the whole ones of equilibrate"
         raise InputError("schedule.measure", measure, legal)
+    if schedule.relaxation_times is not None and not _planned_samples(schedule)[0]:
+        legal = f"be at least schedule.sample_every, {every:g} T, beside schedule.relaxation_times"
+        raise InputError("schedule.equilibrate", schedule.equilibrate, legal)
     if schedule.target_stderr is not None and phases(scene, schedule) < REQUIRED_PHASES:
         legal = (
             f"divide a period of the drive into {REQUIRED_PHASES} samples "
@@ -246,16 +263,56 @@ def run(
     )
     theory = _theory_of_gas(scene, experiment)
 
-    def run_to(schedule):
-        """Prolong the run to a schedule; return the variables, and whether R may be trusted."""
+    def rows_to(schedule):
+        """Prolong the run to a schedule; return all its samples as columns by name."""
         simulation.expect(schedule.equilibrate + schedule.measure)
         leg = driven_leg(gas, schedule)
         simulation.follow(0, lambda: gas, lambda _: [leg])
-        rows = samples.rows(leg.name, leg.samples)
+        return samples.rows(leg.name, leg.samples)
+
+    def run_to(schedule):
+        """Prolong the run to a schedule; return the variables, and whether R may be trusted."""
+        rows = rows_to(schedule)
         variables = _measured_variables(gas, schedule, rows, gas_start, theory)
         return variables, variables.get("R_ci95_trusted") == YES
 
-    return prolonged_until_met(experiment.schedule, LENGTH, run_to)
+    def settling_time(wait):
+        """Prolong the run to the end of a wait, and return theory's e-fold in its second half.
+
+        Both are in T.
+        """
+        rows = rows_to(replace(experiment.schedule, equilibrate=wait, measure=0.0))
+        middle, every = len(rows["time"]) // 2, experiment.schedule.sample_every
+        return _window_from(gas, rows, middle, gas_start, theory, every).memory_times.settling
+
+    schedule, wait_variables = _with_relaxed_start(experiment.schedule, settling_time)
+    return prolonged_until_met(schedule, LENGTH, run_to) | wait_variables
+
+
+def _with_relaxed_start(
+    schedule: SteadySettings, settling_time: Callable[[float], float]
+) -> tuple[SteadySettings, NamedValues]:
+    """Return a schedule that waits for its `relaxation_times`, and variables on the wait by name.
+
+    `settling_time(wait)` runs to the end of a wait (T), and returns the e-fold of the slowest
+    transient (T), by theory in the state of the gas there. The energies may still change then:
+    the wait is at most doubled before theory is asked again.
+    """
+    if schedule.relaxation_times is None:
+        return schedule, {}
+    longest = min(
+        WAIT_LIMIT * schedule.equilibrate,
+        max(schedule.equilibrate, SAMPLE_LIMIT * schedule.sample_every - schedule.measure),
+    )
+    wait, unit = schedule.equilibrate, schedule.period or schedule.sample_every
+    while True:
+        relaxation_time = settling_time(wait)
+        required = schedule.relaxation_times * relaxation_time
+        if wait >= min(required, longest):
+            relaxations = _quotient_or_infinity(wait, relaxation_time)
+            variables = {"wait": wait, "wait_relaxations": relaxations}
+            return replace(schedule, equilibrate=wait), variables
+        wait = math.ceil(min(required, 2.0 * wait, longest) / unit) * unit
 
 
 def driven_leg(gas: Gas, schedule: SteadySettings) -> Leg:
@@ -300,22 +357,12 @@ def _measured_variables(
     """Return the variables of a run by name, from all its samples `rows` (columns by name)."""
     scene, every, per_period = gas.scene, schedule.sample_every, samples_per_period(schedule)
     planned, length = _planned_samples(schedule)
-    series, spins = gas.energies(rows), mean_spins(rows, scene, gas.state)
-    signals = [*series.present_components(), *spins]
+    spins = mean_spins(rows, scene, gas.state)
+    signals = [*gas.energies(rows).present_components(), *spins]
     first, settled = _measurement_start(signals, planned, length, per_period)
-    collisions_before = rows["collisions"][first - 1] if first else gas_start.collisions
-    window = series.map(lambda values: values[first:])
-    species = [
-        energies.map(lambda values: values[first:])
-        for energies in species_energies(rows, scene, gas.state)
-    ]
-    waited = 2 * collisions_before / gas.particles
-    measured = MeasuredLength(
-        2 * (rows["collisions"][-1] - collisions_before) / gas.particles,
-        len(window.translational) * every,
+    window, species, waited, measured, memory_times = _window_from(
+        gas, rows, first, gas_start, theory, every
     )
-    state = _thermal_state(species or [window], measured.frequency, gas.particles, theory.lengths)
-    memory_times = _with_fixed_spins(theory.memory(state), state, window)
     periods = len(window.translational) // per_period
     evidence = _evidence_of_window(waited, measured, periods, memory_times)
     required = MINIMUM_SAMPLE_SIZE if scene.effects.gravity is None else REQUIRED_IN_BED
@@ -368,6 +415,35 @@ class MeasuredLength(NamedTuple):
     def frequency(self) -> float:
         """Number of contacts of a particle per T."""
         return self.collisions / self.time
+
+
+class Window(NamedTuple):
+    """A measured window: its energies and theory's memory times in its state."""
+
+    energies: Energies  # (samples,)
+    species: Sequence[Energies]  # empty if all particles are identical
+    waited: float  # collisions per particle before it
+    measured: MeasuredLength
+    memory_times: GasMemory
+
+
+def _window_from(
+    gas: Gas, rows: Columns, first: int, gas_start: GasStart, theory: TheoryOfGas, every: float
+) -> Window:
+    """Return the window of all samples in `rows`, `every` T apart, from the index `first` on."""
+    collisions_before = rows["collisions"][first - 1] if first else gas_start.collisions
+    window = gas.energies(rows).map(lambda values: values[first:])
+    species = [
+        energies.map(lambda values: values[first:])
+        for energies in species_energies(rows, gas.scene, gas.state)
+    ]
+    measured = MeasuredLength(
+        2 * (rows["collisions"][-1] - collisions_before) / gas.particles,
+        len(window.translational) * every,
+    )
+    state = _thermal_state(species or [window], measured.frequency, gas.particles, theory.lengths)
+    memory_times = _with_fixed_spins(theory.memory(state), state, window)
+    return Window(window, species, 2 * collisions_before / gas.particles, measured, memory_times)
 
 
 def _evidence_of_window(
