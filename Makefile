@@ -49,11 +49,11 @@ report: setup ## pages for a browser: the report, every point to click on, a gas
 	@echo "With more in it:  make$(AT_SCALE) REPORTED='figures extensions' report"
 
 test: setup ## run the tests, but for those of `make extras`
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))" $(TESTS)
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS) or campaign)" $(TESTS)
 	@echo "All tests pass. Those that take minutes more, a browser, or Slurm:  make extras"
 
 test-fast: setup ## run those tests that need neither a kernel nor a workflow, at each save
-	$(BIN)/python -m pytest -q -n $(JOBS) -m "not ($(EXTRA_TESTS))" $(addprefix tests/,$(FAST))
+	$(BIN)/python -m pytest -q -n $(JOBS) -m "not ($(EXTRA_TESTS) or campaign)" $(addprefix tests/,$(FAST))
 
 extras: .venv/with-browser .venv/with-readers .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)" $(TESTS)

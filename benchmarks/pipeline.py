@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -141,14 +142,14 @@ def scheduling(jobs: int) -> dict[str, float]:
     return {"scheduling_jobs": jobs, "scheduling_cpu": cpu, "scheduling_wall": wall}
 
 
-def copy_project(project: Path) -> None:
-    """Copy the project to the folder `project`."""
+def copy_project(project: Path, checkout: Path = ROOT, names: Iterable[str] = COPIED_PATHS) -> None:
+    """Copy files and folders of a checkout, given by their names, to the new folder `project`."""
     project.mkdir()
-    for name in COPIED_PATHS:
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, project / name)
+    for name in names:
+        if (checkout / name).is_dir():
+            shutil.copytree(checkout / name, project / name)
         else:
-            shutil.copy2(ROOT / name, project)
+            shutil.copy2(checkout / name, project)
 
 
 def _cpu_of(process: int) -> float:

@@ -1,6 +1,7 @@
 # Kernels, points, reduced datasets: the kernels of an experiment are compiled before its points are run.
 # A job of the rule EXPERIMENT_blockN makes `seeds_per_job` seeds at `betas_per_job` values of beta of the
-# sweep (see config.yaml); any other point has a separate job.
+# sweep (see config.yaml), at one r, or at all r of a sweep that takes seconds; any other point has a
+# separate job.
 
 
 rule compile_kernel:
@@ -36,18 +37,18 @@ for block in sweeps.blocks():
         name:
             block.name
         input:
-            from_wildcards(sweeps.kernel),
+            *(from_wildcards(sweeps.kernel, **r) for r in block.at_each_r),
         output:
             block.outputs,
         log:
-            f"logs/{{scale}}/{{experiment}}/r{{r}}/{block.log}.log",
+            f"logs/{{scale}}/{{experiment}}/{block.log}.log",
         benchmark:
-            f"logs/{{scale}}/{{experiment}}/r{{r}}/{block.log}.tsv"
+            f"logs/{{scale}}/{{experiment}}/{block.log}.tsv"
         wildcard_constraints:
             **block.constraints,
-        priority: from_wildcards(sweeps.priority, points=len(block.outputs))
+        priority: from_wildcards(sweeps.priority, points=len(block.outputs), **block.at_each_r[0])
         resources:
-            runtime=per_attempt(sweeps.minutes, points=len(block.outputs)),
+            runtime=per_attempt(sweeps.minutes, points=len(block.outputs), **block.at_each_r[0]),
             mem_mb=per_attempt(sweeps.megabytes),
         params:
             code=from_wildcards(sweeps.point_code),
@@ -56,11 +57,10 @@ for block in sweeps.blocks():
             # not recorded: a point is up to date regardless of the job that made it
             points=lambda wildcards, output: points_of_job(output),
         message:
-            "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
+            "{wildcards.experiment}: {params.points}"
         shell:
-            "roughgas run {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
-            " {params.points:q} --settings {params.settings:q} {params.studies:q} --output {output:q}"
-            " > {log:q} 2>&1"
+            "roughgas run {wildcards.experiment:q} --scale {wildcards.scale:q} {params.points:q}"
+            " --settings {params.settings:q} {params.studies:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule reduce:

@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 COPIED = ("config.yaml", "docs", "pyproject.toml", "README.md", "requirements.lock", "rules", "src")
 COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "profiles")
 COPIED += ("studies", "tests")
-QUICK = "not (slow or remedy or browser or slurm)"
+QUICK = "not (slow or remedy or campaign or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "robustness/test_surroundings.py"],
     "cli": ["robustness/test_surroundings.py", "test_refusals.py"],

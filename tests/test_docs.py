@@ -14,6 +14,7 @@ import xarray
 import roughgas
 from roughgas import config, theory
 from roughgas.cli import parser_of
+from roughgas.compiling.cache_folders import cache_root
 from roughgas.results.crate import project_files
 
 ROOT = Path(__file__).parent.parent
@@ -159,10 +160,14 @@ def test_all_of_it_typed_in_a_fresh_clone(typed):
 
 
 def environment(folder):
-    """Return the environment of a new user: no caches, no paths of this process."""
-    removed = ("PYTHONPATH", "VIRTUAL_ENV", "ROUGHGAS_CACHE_DIR")
+    """Return the environment of a new user: no paths of this process, no caches but of kernels.
+
+    Their folder is named by a hash of their sources; compiling them again takes a minute.
+    """
+    removed = ("PYTHONPATH", "VIRTUAL_ENV")
     inherited = {key: value for key, value in os.environ.items() if key not in removed}
-    return inherited | {"XDG_CACHE_HOME": str(folder / "cache")}
+    caches = {"XDG_CACHE_HOME": str(folder / "cache"), "ROUGHGAS_CACHE_DIR": str(cache_root())}
+    return inherited | caches
 
 
 def test_the_image_holds_all_that_a_run_consists_of():

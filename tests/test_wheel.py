@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from roughgas.cli.commands import COMMANDS
+from roughgas.compiling.cache_folders import cache_root
 
 ROOT = Path(__file__).parent.parent
 POINT = "cooling --scale small --r 0.9 --beta 0.5"
@@ -139,7 +140,7 @@ def installed(wheel):
 
 def ran(installed, arguments, folder):
     environ = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    environ["ROUGHGAS_CACHE_DIR"] = str(installed.parents[2] / "kernels")
+    environ["ROUGHGAS_CACHE_DIR"] = str(cache_root())  # named by a hash of the kernels' sources
     return subprocess.run(arguments, cwd=folder, env=environ, capture_output=True, text=True)
 
 

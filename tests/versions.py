@@ -35,7 +35,7 @@ PUBLIC = ("tests/kernel/test_collision_rule.py", "tests/test_bits.py")
 """Tests that are repeated with kernels compiled by numba's public functions alone."""
 PRIVATE = ("tests/compiling", "tests/robustness/test_stopping.py")
 """Tests of what is used though it is private."""
-QUICK = "not slow and not remedy and not browser and not slurm"
+QUICK = "not slow and not remedy and not campaign and not browser and not slurm"
 
 
 def requirements(way, project):

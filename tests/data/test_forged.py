@@ -15,6 +15,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+from campaigns import tries
 from schedules import TINY
 from tests.entry import outcome
 from tests.forgeries import GAS, NAMES, forge, forge_sealed, real_files, stopped
@@ -32,7 +33,7 @@ from roughgas.simulation.state_encoding import UnusableCheckpoint
 STUDIES = Path(__file__).parents[2] / "studies"
 FOLDERS = {"STUDY": str(STUDIES / "clustering"), "COVERAGE": str(STUDIES / "coverage")}
 SEED = 20
-SAMPLE, BATCH, FORGERIES = 25, 100, 1000
+SAMPLE, BATCH, FORGERIES = 25, 100, tries(300)
 READER_LIMIT = 30
 """Time limit of a reader, in seconds."""
 HDF5_LIMIT = 5
@@ -281,7 +282,7 @@ def undisturbed(real):
     return read_point(real["state"])["R"].item()
 
 
-CHECKPOINTS = [range(20), pytest.param(range(20, 300), marks=pytest.mark.slow)]
+CHECKPOINTS = [range(20), pytest.param(range(20, tries(300)), marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("numbers", CHECKPOINTS)

@@ -31,8 +31,17 @@ def limit_cpu(seconds=900):
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 
 
-@pytest.mark.remedy
-@pytest.mark.parametrize("remedy", REMEDIES, ids=lambda remedy: remedy["remedy"])
+def marked():
+    """Yield the remedies as parameters: the first of each file has the mark `remedy`, others the
+    mark `campaign`, since each compiles a kernel."""
+    files = set()
+    for remedy in REMEDIES:
+        mark = pytest.mark.campaign if remedy["file"] in files else pytest.mark.remedy
+        files.add(remedy["file"])
+        yield pytest.param(remedy, marks=mark, id=remedy["remedy"])
+
+
+@pytest.mark.parametrize("remedy", [*marked()])
 def test_a_case_fails_without_its_safeguard(remedy, tmp_path, request):
     """In a new process, a margin is beyond its limit."""
     package_copy = tmp_path / "roughgas"

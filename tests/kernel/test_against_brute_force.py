@@ -107,7 +107,7 @@ CHANNEL = {
     "bottom_wall": {"restitution": 0.8, "roughness": 0.5},
     "lid": {"temperature": 2.0},
 }
-FALLING = {"spin": {"inertia": 0.4}, "gravity": {"acceleration": 0.3, "direction": [1, -2, 2]}}
+FALLING = {"spin": {"inertia": 0.4}, "gravity": {"acceleration": 0.03, "direction": [1, -2, 2]}}
 CASES = {  # experiment, r, beta, seed
     "gas": (settings("gas", 8, [12, 12]), 0.98, 0.2, 1),
     "smallest box": (settings("gas", 3, [4.01, 8.0]), 0.99, 0.5, 2),

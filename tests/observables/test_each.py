@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -191,6 +192,23 @@ def test_autocorrelations_decay_as_in_an_ornstein_uhlenbeck_process():
         correlations["velocity_autocorrelation"] - expected
     ).max() < 4.0 * error / math.sqrt(2)
     assert np.abs(correlations["spin_autocorrelation"] - 4.0 * expected).max() < 16.0 * error
+
+
+def test_an_autocorrelation_copies_no_earlier_observations():
+    """The memory of an observation does not grow with the delays: nor does its time per delay."""
+    particles, delays = 2000, 200
+    system = system_of((20, 15), particles=particles, interval=0.5)
+    frame = frame_of(system, velocity=np.ones((particles, 2)), spin=np.ones((particles, 1)))
+    observable = OBSERVABLES["autocorrelation"](system, delays=delays)
+    for _ in range(delays):
+        observable.observe(frame)
+    tracemalloc.start()
+    try:
+        observable.observe(frame)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 0.1 * delays * particles * 3 * 8  # bytes of the earlier observations
 
 
 def test_fluxes_are_averaged_over_all_directions():

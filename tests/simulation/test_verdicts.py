@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from brute_force import begin, settings
+from campaigns import tries
 from hypothesis import HealthCheck, Phase, given, seed
 from hypothesis import settings as profile
 from hypothesis import strategies as st
@@ -31,7 +32,7 @@ COOLING = {
 }
 LARGEST_DEVIATION = 5.0  # sigma, of a Gaussian: by chance once in two million
 LENGTH_RATIO = 10
-EXAMPLES = 300
+EXAMPLES = tries(100)
 LEAST_TRUSTED_SHARE = 0.1  # least share of trusted scenes: a verdict that trusts nothing is useless
 
 
@@ -187,7 +188,7 @@ def test_nothing_is_known_without_evidence(run):
 def test_trusted_values_are_right():
     """Within 5 errors of a run ten times longer with another seed, in random scenes.
 
-    Errors have their degrees of freedom. None of 300 scenes may fail: by chance one fails in a
+    Errors have their degrees of freedom. None of 100 scenes may fail: by chance one fails in three
     thousand runs of this test.
     """
     verdicts, failures = [], []

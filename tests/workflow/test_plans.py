@@ -112,13 +112,31 @@ def _makes(block, path):
     return False
 
 
+def test_one_job_makes_a_whole_sweep_that_takes_seconds(configuration, sweeps):
+    (short,) = _blocks_of("sheared", sweeps)
+    paths_of_points = [path.format(scale="small", experiment="sheared") for path in short.outputs]
+    assert paths_of_points == sweeps.points("small", "sheared")
+    assert [values["r"] for values in short.at_each_r] == ["0.99", "0.9", "0.8", "0.6"]
+    at_full_size = Sweeps(dataclasses.replace(configuration, scale="paper"), [])
+    (long,) = _blocks_of("sheared", at_full_size)
+    assert long.at_each_r == ({},) and all("/r{r}/" in output for output in long.outputs)
+
+
+def _blocks_of(experiment, sweeps):
+    """Return the blocks of an experiment at the scale of `sweeps`; their names are numbered."""
+    return [block for block in sweeps.blocks() if block.name.startswith(f"{experiment}_block")]
+
+
 def test_the_name_of_a_block_does_not_depend_on_other_experiments(configuration):
-    names = {block.name for block in jobs.blocks(configuration, "small", "cooling")}
+    def is_short(experiment):
+        return experiment == "sheared"
+
+    names = {block.name for block in jobs.blocks(configuration, "small", "cooling", is_short)}
     alone = config.load(
         ROOT / "config.yaml",
         {"scale": "small", "experiments": {"added": {"extends": "cooling"}}},
     )
-    assert names <= {block.name for block in jobs.blocks(alone, "small", "cooling")}
+    assert names <= {block.name for block in jobs.blocks(alone, "small", "cooling", is_short)}
 
 
 def test_the_kernel_of_a_point_is_that_of_the_first_r_which_needs_the_same(sweeps):
@@ -160,9 +178,11 @@ def test_run_time_and_memory_are_estimates_times_the_attempt(sweeps):
     assert 500 < first < 2000 and 3 * first - 3 < third <= 3 * first
 
 
-def test_the_options_of_a_block_are_its_betas_and_its_seeds():
+def test_the_options_of_a_block_are_its_axes():
     outputs = [f"results/a/b/r1/beta{beta}/seed{n}.nc" for beta in ("-1", "0") for n in (1, 2)]
-    assert points_of_job(outputs) == ["--beta=-1", "--beta=0", "--seed", "1", "2"]
+    assert points_of_job(outputs) == ["--r=1", "--beta=-1", "--beta=0", "--seed", "1", "2"]
+    outputs = [f"results/a/b/c0.5/r{r}/beta0.1/seed1.nc" for r in ("1", "0.9")]
+    assert points_of_job(outputs) == ["--r=1", "--r=0.9", "--beta=0.1", "--seed", "1"]
 
 
 # ---------------------------------------------------------------- studies

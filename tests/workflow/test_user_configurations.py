@@ -111,7 +111,7 @@ def test_snakemake_reads_numbers_of_a_file_as_the_command_does(project):
     """Snakemake's reader takes 1e-4 for text."""
     point = "results/paper/cooling/r0.9/beta0.05/seed1.nc"
     output = project.succeed("-n", "--configfile", str(ROOT / "config.yaml"), "--", point)
-    assert "cooling: r = 0.9, --beta=0.05" in output
+    assert "cooling: --r=0.9 --beta=0.05" in output
 
 
 @pytest.mark.slow

@@ -26,8 +26,6 @@ from roughgas.base.labels import (
 )
 from roughgas.cli.values import check_outputs, labels, number
 from roughgas.config import study_code
-from roughgas.data import other_programs
-from roughgas.data.other_programs.particles import UNIT
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import protocols
 from roughgas.simulation.checkpoint import checkpoint_path
@@ -89,6 +87,9 @@ class Start(NamedTuple):
 
         Raises InputError for a file without one, and for illegal options.
         """
+        from roughgas.data import other_programs
+        from roughgas.data.other_programs.particles import UNIT
+
         options = self._named_options()
         if self.file and other_programs.is_of_other_program(self.file):
             units = {

@@ -17,6 +17,7 @@ from roughgas.base import RESTITUTION, ROUGHNESS, InputError, short_repr, unknow
 from roughgas.base.fields import (
     NAME,
     TAG,
+    OwnSettings,
     Schema,
     Settings,
     changes_of,
@@ -199,11 +200,12 @@ def check_schema(instance: Any, source: str, definition: str) -> None:
     _refuse(_validator(definition), instance, source, separator)
 
 
-def check_by(schema_of_study: Any, instance: Any, source: str, name: str) -> None:
-    """Raise InputError for the first value of `instance` that violates a study's JSON schema.
+def check_by(schema_of_study: Any, instances: Mapping[str, OwnSettings], name: str) -> None:
+    """Raise InputError for the first value of `instances` that violates a study's JSON schema.
 
-    `source` precedes the key of the value; messages call the schema `name`. It may refer to
-    definitions of the schema of configurations. Raises InputError also for a schema that is none.
+    `instances` have their sources as keys, which precede the key of the value; messages call the
+    schema `name`. It may refer to definitions of the schema of configurations. Raises InputError
+    also for a schema that is none.
     """
     from jsonschema import Draft202012Validator, SchemaError
     from referencing.exceptions import Unresolvable
@@ -213,7 +215,8 @@ def check_by(schema_of_study: Any, instance: Any, source: str, name: str) -> Non
         Draft202012Validator.check_schema(schema_of_study)
         definitions = schema()["$defs"] | schema_of_study.get("$defs", {})
         validator = _validator_of({**schema_of_study, "$defs": definitions})
-        _refuse(validator, instance, source, ".")
+        for source, instance in instances.items():
+            _refuse(validator, instance, source, ".")
     except (SchemaError, Unresolvable, TypeError) as error:
         raise InputError(name, str(error).partition("\n")[0], legal) from error
 

@@ -245,7 +245,7 @@ def _task_settings(
     configuration: Configuration, name: str, file: StudyFile
 ) -> dict[str, OwnSettings]:
     """Return the checked settings of the tasks of the study `name`, by scale."""
-    settings_at = {}
+    settings_at, checked = {}, {}
     for scale in configuration.scales:
         settings = _written_settings(configuration, name, file, scale)
         at_scale = "" if scale == configuration.scale else f" at scale {scale}"
@@ -253,8 +253,8 @@ def _task_settings(
         for module in file.study.modules:
             if module not in settings:
                 raise InputError(f"{source}.{module}", "(nothing)", "be given")
-        check_tasks(file.study.folder, settings, source)
-        settings_at[scale] = settings
+        settings_at[scale] = checked[source] = settings
+    check_tasks(file.study.folder, checked)
     return settings_at
 
 
@@ -290,17 +290,18 @@ def _check_accuracy(configuration: Configuration, study_files: Iterable[StudyFil
             if file.has_accuracy_settings and (configuration.accuracy or root.get(ACCURACY)):
                 folder = Path(file.study.folder)
                 settings = _written_settings(configuration, folder.name, file, scale)
-                check_tasks(folder, settings, f"{configuration.source}: accuracy at scale {scale}")
+                source = f"{configuration.source}: accuracy at scale {scale}"
+                check_tasks(folder, {source: settings})
 
 
 def check_tasks(
-    folder: str | Path, settings: OwnSettings, source: str, module: str | None = None
+    folder: str | Path, settings: Mapping[str, OwnSettings], module: str | None = None
 ) -> None:
     """Check settings of tasks against schema.yaml of the study in `folder`, if it exists.
 
-    With `module`, the settings of this module are checked against its property there. Messages call
-    the settings `source`. The schema may use definitions and formats of the schema of config.yaml.
-    Raises InputError.
+    The keys of `settings` are names of settings in messages, such as those of several scales. With
+    `module`, the settings of this module are checked against its property there. The schema may use
+    definitions and formats of the schema of config.yaml. Raises InputError.
     """
     from roughgas.config.json_schema import check_by
 
@@ -310,7 +311,7 @@ def check_tasks(
         schema = read_yaml(path, schema_name, pipes=False)
         if module is not None:
             schema = {"$defs": schema.get("$defs", {}), **schema["properties"][module]}
-        check_by(schema, settings, source, schema_name)
+        check_by(schema, settings, schema_name)
 
 
 def task_settings(

@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roughgas.base import InputError, check_one_of, from_json, merged, short_repr, sorted_json
 from roughgas.base.fields import RawSettings, read
@@ -54,6 +54,19 @@ ATTRIBUTES = ("experiment", "scale", "dimension", "swept", "variant", "command",
 SEEDS_PER_JOB = 4
 PACKING_TOLERANCE = 1e-9  # relative deviation of the packing of a given box
 MAX_SIDE = 1e9  # a
+
+
+class PointBlock(NamedTuple):
+    """Points of a sweep: all combinations of labels; a wildcard stands for any r or beta."""
+
+    r: list[str]
+    betas: list[str]
+    seeds: list[str]
+
+    @property
+    def points(self) -> list[tuple[str, str, str]]:
+        """The labels (r, beta, seed) of all points; the seed varies fastest."""
+        return [*itertools.product(*self)]
 
 
 @dataclass(frozen=True)
@@ -232,23 +245,27 @@ class WrittenExperiment:
         yield from itertools.product(self.labels("r"), self.labels("beta"), seeds)
 
     def blocks(
-        self, betas_per_job: int = 1, seeds_per_job: int = SEEDS_PER_JOB, last: bool = False
-    ) -> list[tuple[list[str], list[str]]]:
-        """Return the blocks of points that jobs run at each r: pairs of labels (betas, seeds), such
-        as (["0", "0.5"], ["1", "2"]), all combined.
+        self,
+        betas_per_job: int = 1,
+        seeds_per_job: int = SEEDS_PER_JOB,
+        last: bool = False,
+        is_short: bool = False,
+    ) -> list[PointBlock]:
+        """Return the blocks of points that jobs run, such as (["{r}"], ["0", "0.5"], ["1", "2"]).
 
         A job runs at most `betas_per_job` betas, unless the experiment has its own number, and
-        `seeds_per_job` seeds. In a block of a single beta the label is the wildcard `{beta}`.
-        Blocks have two points or more: a single remaining point is in no block, and has a separate
-        job. For the experiment that runs `last`, a block has at most half of the remaining betas,
-        so that all cores finish at about the same time.
+        `seeds_per_job` seeds, at one r, or at all r of an experiment that `is_short`. The label of
+        a single r or beta is a wildcard. Blocks have two points or more: a single remaining point
+        is in no block, and has a separate job. For the experiment that runs `last`, a block has at
+        most half of the remaining betas, so that all cores finish at about the same time.
         """
         labels = [str(number) for number in range(1, self.seeds + 1)]
-        by_seed = _chunks(labels, seeds_per_job)
+        by_seed, every_r = _chunks(labels, seeds_per_job), self.labels("r")
         betas, size = self.labels("beta"), self.raw.get("betas_per_job", betas_per_job)
         by_beta = [["{beta}"]] if size == 1 else _chunks(betas, size, 2 if last else 1)
-        pairs = [(betas, seeds) for betas in by_beta for seeds in by_seed]
-        return [(betas, seeds) for betas, seeds in pairs if len(betas) * len(seeds) > 1]
+        r = every_r if is_short and len(every_r) > 1 else ["{r}"]
+        blocks = [PointBlock(r, betas, seeds) for betas in by_beta for seeds in by_seed]
+        return [block for block in blocks if len(block.points) > 1]
 
     def spelled(self) -> "WrittenExperiment":
         """Return the experiment with the labels of its sweep spelled as in paths: 0.9 for 0.90.

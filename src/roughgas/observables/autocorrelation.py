@@ -50,6 +50,8 @@ VELOCITY_NAME, SPIN_NAME = "velocity_autocorrelation", "spin_autocorrelation"
 STRESS_NAME, HEAT_FLUX_NAME = "stress_autocorrelation", "heat_flux_autocorrelation"
 VISCOSITY, CONDUCTIVITY = "viscosity_until", "conductivity_until"
 DELAY_DIMS = ("delay",)
+CACHED_PRODUCTS = 2**15
+"""Products that are computed at once: 256 kB."""
 DELAY = Variable("time from one observation to another", TIME, DELAY_DIMS)
 
 
@@ -79,7 +81,8 @@ class Autocorrelation(Observable):
     def __init__(self, system: System, delays: int) -> None:
         """Keep velocities and spins of earlier observations; `delays` is their number."""
         super().__init__(system)
-        self._path: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=delays)
+        self._delays, self._observations = delays, 0
+        self._recent: tuple[np.ndarray, ...] = ()
         self.coordinates = {"delay": np.arange(delays) * system.interval}
 
     def observe_series(self, frames: FrameSeries) -> NamedArrays:
@@ -89,13 +92,13 @@ class Autocorrelation(Observable):
         observations.
         """
         present = frames.thermal_velocity, frames.thermal_spin
-        before = [*zip(*reversed(self._path), strict=True)] or [(), ()]
-        delays = self._path.maxlen or 0
+        if not self._recent:
+            self._recent = tuple(np.zeros((self._delays, *x.shape[1:])) for x in present)
         products = [
-            _mean_products(np.array([*earlier, *values]), frames.instants, delays)
-            for earlier, values in zip(before, present, strict=True)
+            _mean_products(recent, values, self._observations)
+            for recent, values in zip(self._recent, present, strict=True)
         ]
-        self._path.extendleft(zip(*(values[-delays:].copy() for values in present), strict=True))
+        self._observations += frames.instants
         return {VELOCITY_NAME: products[0], SPIN_NAME: products[1]}
 
     @columnwise
@@ -106,19 +109,34 @@ class Autocorrelation(Observable):
         return {VELOCITY_NAME: means[VELOCITY_NAME]}
 
 
-def _mean_products(path, instants, delays):
-    """Return mean products (instants, delays) of the last instants of a path with earlier instants.
+def _mean_products(recent, series, observations):
+    """Return mean products (k, delays) of vectors with the vectors of preceding observations.
 
-    `path` is (observations, N, ...), vectors of the particles; `instants` and `delays` are numbers
-    of observations. NaN for delays that exceed the path.
+    `recent` is a ring of the vectors at the latest observations, (delays, N, ...): observation n is
+    row n modulo delays, so that no vector moves while it is needed. `series`, (k, N, ...), replaces
+    its oldest rows after a number of earlier `observations`. NaN for delays beyond the first one.
     """
-    path = path.reshape(len(path), -1)
-    mean_products = np.full((instants, delays), np.nan)
-    for delay in range(min(delays, len(path))):
-        first = max(len(path) - instants, delay)
-        products = path[first:] * path[first - delay : len(path) - delay]
-        mean_products[first - len(path) :, delay] = products.mean(axis=1)
-    return mean_products
+    delays, numbers = len(recent), np.arange(len(recent))
+    ring, series = recent.reshape(delays, -1), series.reshape(len(series), -1)
+    sums = np.full((len(series), delays), np.nan)
+    rows = enumerate(zip(series, sums, strict=True), start=observations)
+    for number, (vectors, sums_by_delay) in rows:
+        row, known = number % delays, min(number + 1, delays)
+        ring[row] = vectors
+        sums_by_delay[:known] = _products(ring[:known], vectors)[row - numbers[:known]]
+    return sums / ring.shape[1]
+
+
+def _products(rows, vectors):
+    """Return the sum of products of each of `rows`, (rows, n), with `vectors`, (n,).
+
+    Products of a few rows at a time stay in the processor's cache.
+    """
+    products, step = np.empty(len(rows)), max(1, CACHED_PRODUCTS // len(vectors))
+    for first in range(0, len(rows), step):
+        block = slice(first, first + step)
+        np.add.reduce(rows[block] * vectors, axis=1, out=products[block])
+    return products
 
 
 class FluxAutocorrelation(Observable):

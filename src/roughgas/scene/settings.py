@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from msgspec import to_builtins
-from msgspec.structs import fields, replace
+from msgspec.structs import replace
 
 from roughgas.base.fields import (
     RawSettings,
@@ -97,9 +97,9 @@ def _in_order(effects: dict[str, Settings]) -> dict[str, Settings]:
     return {name: effects[name] for name in EFFECTS if name in effects}
 
 
-def _field_names() -> list[str]:
+def _field_names() -> tuple[str, ...]:
     """Return the keys of a scene in a configuration."""
-    return [field.name for field in fields(SceneSettings)]
+    return SceneSettings.__struct_fields__
 
 
 def scene_settings(raw: RawSettings, key: str = "") -> SceneSettings:

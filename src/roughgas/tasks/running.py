@@ -118,7 +118,7 @@ def run_task(
     module_name = module or RUN_MODULE
     run = _study_function(folder, module_name, "run")
     task_settings = TaskSettings.from_text(settings)
-    check_tasks(folder, task_settings.study, "--settings: study", module)
+    check_tasks(folder, {"--settings: study": task_settings.study}, module)
     digest = hashlib.sha256(f"{code_in(folder, module_name)} {task} {settings}".encode())
     checkpoint = Checkpoint(Path(checkpoint_path(output)), digest.hexdigest())
     if "checkpoint" in inspect.signature(run).parameters:

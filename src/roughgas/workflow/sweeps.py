@@ -186,7 +186,23 @@ class Sweeps:
     def blocks(self) -> Iterator[jobs.Block]:
         """Yield the blocks of points that jobs make, at the default scale of the configuration."""
         last = self.ordered[-1] if self.ordered else ""
-        return jobs.blocks(self.configuration, self.configuration.scale, last)
+        scale = self.configuration.scale
+        return jobs.blocks(
+            self.configuration, scale, last, functools.partial(self._is_short, scale)
+        )
+
+    def _is_short(self, scale: str, experiment: str) -> bool:
+        """Return whether the sweep of an experiment, or of each variant, takes a few seconds.
+
+        All betas count as beta = 0. An illegal experiment is not short: its jobs refuse it.
+        """
+        try:
+            written = self.written(scale, experiment)
+            of_points = [self.collisions(scale, experiment, r, "0") for r in written.labels("r")]
+        except InputError:
+            return False
+        collisions = sum(of_points) + jobs.COLLISIONS_OF_POINT * len(of_points)
+        return collisions * len(written.labels("beta")) * written.seeds <= jobs.SHORT_SWEEP
 
     def _collisions(self, scale: str, experiment: str, r: str, beta: str) -> float:
         """Return an estimate of the number of collisions in a point, of the first variant."""
@@ -220,7 +236,7 @@ class Sweeps:
         """Return the priority of a job of a number of `points`, which grows with its collisions.
 
         The longest jobs of an experiment start first, so that no long job remains at the end. A job
-        of several betas counts as beta = 0.
+        of several betas counts as beta = 0, a job of several r as one of them.
         """
         length = points * self.collisions(scale, experiment, r, beta)
         return self._base_priority(experiment) + min(length, PRIORITY_STEP - 1)
@@ -230,7 +246,8 @@ class Sweeps:
     ) -> int:
         """Return the limit of the run time of a job of a number of `points`, in minutes.
 
-        It grows with the attempt, which counts from 1. A job of several betas counts as beta = 0.
+        It grows with the attempt, which counts from 1. Jobs of several points count as in
+        `priority`.
         """
         return jobs.minutes(points * self.collisions(scale, experiment, r, beta), attempt)
 
@@ -252,9 +269,10 @@ def _point(r: str, beta: str, seed: str) -> GridPoint:
 def points_of_job(outputs: Iterable[str]) -> list[str]:
     """Return the options of `roughgas run` for the points at the paths `outputs`.
 
-    These are all combinations of some betas and seeds.
+    These are all combinations of some r, betas and seeds.
     """
-    paths = [output.rsplit("/", 2)[-2:] for output in outputs]
-    betas = dict.fromkeys(folder.removeprefix("beta") for folder, _ in paths)
-    seeds = dict.fromkeys(file.removeprefix("seed").removesuffix(".nc") for _, file in paths)
-    return [*(f"--beta={beta}" for beta in betas), "--seed", *seeds]
+    paths = [output.removesuffix(".nc").rsplit("/", 3)[1:] for output in outputs]
+    r, betas, seeds = (dict.fromkeys(labels) for labels in zip(*paths, strict=True))
+    options = [f"--r={label.removeprefix('r')}" for label in r]
+    options += [f"--beta={label.removeprefix('beta')}" for label in betas]
+    return [*options, "--seed", *(label.removeprefix("seed") for label in seeds)]
