@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from roughgas.kernel import hooks
+from roughgas.kernel.size_classes import hierarchy
 from roughgas.kernel.state import (
     COUNTS,
     NOBODY,
@@ -54,11 +55,11 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     number, dimension = position.shape
     narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
     width, is_swept = narrowest + (SKIN if scene.lists else 0.0), number <= SWEEP_LIMIT
-    grid = () if is_swept else cell_grid(scene, position, width)
-    if is_swept or min(grid[0]) < MIN_CELLS:
+    grids = None if is_swept else _grids(scene, position, bodies, width)
+    if grids is None:
         state = _swept_state(scene, number, dimension, precision)
     else:
-        state = _celled_state(scene, number, dimension, precision, *grid, narrowest)
+        state = _celled_state(scene, number, dimension, precision, *grids, narrowest)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -84,11 +85,27 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     return state
 
 
-def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH):
+def _grids(scene, position, bodies, width):
+    """Return numbers and widths of cells along each axis, SizeClasses, and the number of all cells.
+
+    The classes are None where all particles are in one grid, of cells no narrower than `width`.
+    None if the box has no room for cells. Under shear, and with neighbour lists, there is one grid.
+    """
+    if not (bodies is None or scene.lists or scene.effects.shear):
+        smallest, largest = (MIN_CELL_WIDTH * radius for radius in (bodies.radius.min(), bodies.radius.max()))
+        grid = cell_grid(scene, position, smallest, largest)
+        if (grids := hierarchy(*grid, bodies.radius, MIN_CELL_WIDTH)) is not None:
+            return grids
+    counts, widths = cell_grid(scene, position, width)
+    return None if min(counts) < MIN_CELLS else (counts, widths, None, math.prod(counts))
+
+
+def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH, diameter=0.0):
     """Return numbers and widths of cells along each axis, for PER_CELL particles in a cell or more.
 
     `position` (N, D) is in particle radii a, as are the widths. No cell is narrower than
-    `narrowest`. Along an open axis the cells fill the initial height of the gas.
+    `narrowest`. Along an open axis the cells fill the initial height of the gas, and at least
+    MIN_CELLS cells or particles of this `diameter`.
     """
     heights = np.ptp(position, axis=0) + narrowest
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
@@ -98,7 +115,8 @@ def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH):
     volume = PER_CELL[len(lengths)] / density
     min_width = max(narrowest, volume ** (1.0 / len(lengths)))
     min_counts = [MIN_CELLS if length is None else 1 for length in scene.box]
-    lengths = [max(length, n * min_width) for length, n in zip(lengths, min_counts, strict=True)]
+    min_length = max(min_width, diameter)
+    lengths = [max(length, n * min_length) for length, n in zip(lengths, min_counts, strict=True)]
     counts = tuple(max(1, math.floor(length / min_width)) for length in lengths)
     return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
 
@@ -127,7 +145,7 @@ def _swept_state(scene, number, dimension, precision):
     )
 
 
-def _celled_state(scene, number, dimension, precision, counts, widths, narrowest):
+def _celled_state(scene, number, dimension, precision, counts, widths, classes, cells, narrowest):
     """Return an empty state with cells: a cache line for each particle's path, one for its events.
 
     `counts` and `widths` describe the cells along each axis; `narrowest` is the minimum of the
@@ -168,9 +186,10 @@ def _celled_state(scene, number, dimension, precision, counts, widths, narrowest
             counts=counts,
             widths=widths,
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
-            first=np.full(math.prod(counts), NOBODY, np.int32),
+            first=np.full(cells, NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave", "heading")},
             neighbours=_neighbours(number, widths, narrowest) if scene.lists else None,
+            classes=classes,
         ),
     )
 
