@@ -14,7 +14,7 @@ import time
 import numpy as np
 
 from benchmarks.scenes import advance, present
-from roughgas.kernel import layout, size_classes
+from roughgas.kernel import hierarchy, layout
 from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
@@ -23,8 +23,8 @@ from roughgas.scene.settings import scene_settings
 RUNS = 5
 RATIOS = (1.0, 2.0, 5.0, 10.0, 20.0)
 SETTLING_COLLISIONS, MEASURED_COLLISIONS = 5, 10  # per particle
-LEVELS = size_classes.LEVELS
-SCHEMES = {"classes": (0, LEVELS), "single grid": (0, 1), "sweep": (10**9, 1)}
+SCHEMES = {"chosen": (0, None), "classes": (0, math.inf), "single grid": (0, 0.0), "sweep": (10**9, 0.0)}
+"""Limits of the number of swept particles, and of the time with classes over that of one grid."""
 
 
 def main() -> None:
@@ -80,18 +80,19 @@ def compare(gas, schemes: list[str], runs: int) -> list[list[float]]:
     return rates[1:]  # the first compiles
 
 
-def rate(scene, settled, collisions: int, most_swept: int, levels: int) -> float:
+def rate(scene, settled, collisions: int, most_swept: int, worthwhile: float | None) -> float:
     """Return the collisions per second of CPU time, from a settled state.
 
-    `most_swept` is the number of particles up to which they are swept; `levels` is the maximum
-    number of levels of size classes.
+    `most_swept` is the number of particles up to which they are swept; `worthwhile` is the maximum
+    of the estimated time with classes over the time with a single grid, None for the kernel's.
     """
     position, velocity, _ = present(scene, settled)
     spin = np.zeros((len(position), 2 * len(scene.box) - 3))
-    limits = layout.SWEEP_LIMIT, size_classes.LEVELS
-    layout.SWEEP_LIMIT, size_classes.LEVELS = most_swept, levels
+    limits = layout.SWEEP_LIMIT, hierarchy.WORTHWHILE
+    layout.SWEEP_LIMIT = most_swept
+    hierarchy.WORTHWHILE = limits[1] if worthwhile is None else worthwhile
     state = layout.new_state(scene, position, velocity, spin, bodies=settled.bodies)
-    layout.SWEEP_LIMIT, size_classes.LEVELS = limits
+    layout.SWEEP_LIMIT, hierarchy.WORTHWHILE = limits
     begin = time.process_time()
     advance(scene, state, collisions=collisions)
     return float(state.counts[COLLISIONS]) / (time.process_time() - begin)

@@ -111,10 +111,11 @@ def _list_in_cells(state, scene, i, begin, time):
     if not only_new_cells:
         axis = ALL_AXES
         clear_contacts(agenda, i, time + horizon)
-    if cells.classes is None:
-        return _list_surroundings(state, home, begin, image_shift, horizon, axis, step)
-    candidates = state.shortlist.found
-    number = list_near_cells(cells, candidates, begin, home, grid.size_class, axis, step)
+    candidates, number = state.shortlist.found, begin
+    if grid.size_class == 0:
+        number = _list_adjacent(cells, candidates, begin, home, image_shift, horizon, axis, step)
+    if cells.classes is not None:
+        number = list_near_cells(cells, candidates, number, home, grid.size_class, axis, step)
     return _list_followers(cells, candidates, begin, number)
 
 
@@ -176,12 +177,6 @@ def _relative_to_row(image_shift, cells, row, position, velocity):
         (position[0] - height * image_shift[0],) + position[1:],
         (velocity[0] - height * image_shift[1],) + velocity[1:],
     )
-
-
-@jit
-def cell_indices(cells, i):
-    """Return the index of particle i's cell along each axis of its grid, D integers."""
-    return indices_in(grid_of_cell(cells, cells.home[i]), cells.home[i])
 
 
 @jit
@@ -280,28 +275,39 @@ def _correct_column(state, scene, i, time, grid):
 
 
 @jit
-def _list_surroundings(state, home, begin, image_shift, duration, axis, step):
-    """Write the particles around a cell to the shortlist, from index `begin` on; return the end.
+def _list_surroundings(state, i, begin):
+    """Write the particles in i's cell and all adjacent ones to the shortlist; return the end index.
 
-    The cells are `home` (indices along the axes) and all adjacent ones, if `axis` is ALL_AXES, else
-    only the adjacent ones a `step` further along the axis. Under shear rows slide by `image_shift`,
-    and candidates hold for `duration` from now. The first particle of each cell is written, then
-    the followers of written particles, without data-dependent branches.
+    The shortlist is filled from index `begin` on.
     """
-    cells, candidates, number = state.cells, state.shortlist.found, begin
-    if axis == ALL_AXES:
-        for slab in range(-1, 2):
-            number = _list_slab(
-                cells, candidates, number, home, len(home) - 1, slab, image_shift, duration
-            )
-    else:
-        number = _list_slab(cells, candidates, number, home, axis, step, image_shift, duration)
+    cells, candidates = state.cells, state.shortlist.found
+    home = indices_in(grid_of_cell(cells, cells.home[i]), cells.home[i])
+    number = _list_adjacent(cells, candidates, begin, home, None, 0.0, ALL_AXES, 0)
     return _list_followers(cells, candidates, begin, number)
 
 
 @jit
+def _list_adjacent(cells, candidates, begin, home, image_shift, duration, axis, step):
+    """Write the first particle of each cell around a cell to the candidates; return the end index.
+
+    The candidates are filled from index `begin` on. The cells are `home` (indices along the axes)
+    and all adjacent ones, if `axis` is ALL_AXES, else only the adjacent ones a `step` further along
+    the axis. Under shear rows slide by `image_shift`, and candidates hold for `duration` from now.
+    """
+    if axis != ALL_AXES:
+        return _list_slab(cells, candidates, begin, home, axis, step, image_shift, duration)
+    number, last = begin, len(home) - 1
+    for slab in range(-1, 2):
+        number = _list_slab(cells, candidates, number, home, last, slab, image_shift, duration)
+    return number
+
+
+@jit
 def _list_followers(cells, candidates, begin, number):
-    """Append all followers of the candidates from index `begin` to `number`; return the end."""
+    """Append all followers of the candidates from index `begin` to `number`; return the end.
+
+    The first particle of each cell is followed by the others without data-dependent branches.
+    """
     k = begin
     while k < number:
         k, number = _append_followers(cells.following, candidates, number, k, BATCH)
@@ -441,9 +447,7 @@ def _list_members(state, i, begin):
     """
     neighbours, candidates = state.cells.neighbours, state.shortlist.found
     if neighbours.number[i] > LIST_CAPACITY:
-        return _list_surroundings(
-            state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0
-        )
+        return _list_surroundings(state, i, begin)
     for k in range(LIST_CAPACITY):
         candidates[begin + k] = neighbours.members[i, k]
     return begin + int(neighbours.number[i])
@@ -471,7 +475,7 @@ def _list_neighbours(state, scene, i, begin, end):
     index `begin` on is scratch memory.
     """
     neighbours, candidates = state.cells.neighbours, state.shortlist.found
-    number = _list_surroundings(state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0)
+    number = _list_surroundings(state, i, begin)
     middle = read(neighbours.middle, i, 0, scene.box)
     distance = MIN_CELL_WIDTH * largest_of(state.bodies)
     lanes = lanes_of(state.shortlist.when)

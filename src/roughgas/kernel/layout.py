@@ -1,11 +1,11 @@
 """Memory layout of a State, and choice between sweep and cells."""
 
+import functools
 import math
 
 import numpy as np
 
-from roughgas.kernel import hooks
-from roughgas.kernel.size_classes import hierarchy
+from roughgas.kernel import hierarchy, hooks
 from roughgas.kernel.state import (
     COUNTS,
     NOBODY,
@@ -91,13 +91,20 @@ def _grids(scene, position, bodies, width):
     The classes are None where all particles are in one grid, of cells no narrower than `width`.
     None if the box has no room for cells. Under shear, and with neighbour lists, there is one grid.
     """
-    if not (bodies is None or scene.lists or scene.effects.shear):
-        smallest, largest = (MIN_CELL_WIDTH * radius for radius in (bodies.radius.min(), bodies.radius.max()))
-        grid = cell_grid(scene, position, smallest, largest)
-        if (grids := hierarchy(*grid, bodies.radius, MIN_CELL_WIDTH)) is not None:
-            return grids
     counts, widths = cell_grid(scene, position, width)
-    return None if min(counts) < MIN_CELLS else (counts, widths, None, math.prod(counts))
+    single = (counts, widths, None, math.prod(counts)) if min(counts) >= MIN_CELLS else None
+    if bodies is None or scene.lists or scene.effects.shear is not None:
+        return single
+    diameters = MIN_CELL_WIDTH * bodies.radius
+    gas = hierarchy.composition(bodies, _filled(scene, position, diameters.min())[1])
+    grid_with = functools.partial(cell_grid, scene, position, diameter=diameters.max())
+    fastest = hierarchy.fastest(gas, grid_with, MIN_CELL_WIDTH)
+    if fastest is None:
+        return single
+    one_class = hierarchy.single_grid(gas, counts, widths)
+    if single is not None and not hierarchy.is_worthwhile(gas, fastest, one_class):
+        return single
+    return fastest.counts, fastest.widths, *hierarchy.size_classes(gas, fastest)
 
 
 def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH, diameter=0.0):
@@ -105,20 +112,28 @@ def cell_grid(scene, position, narrowest=MIN_CELL_WIDTH, diameter=0.0):
 
     `position` (N, D) is in particle radii a, as are the widths. No cell is narrower than
     `narrowest`. Along an open axis the cells fill the initial height of the gas, and at least
-    MIN_CELLS cells or particles of this `diameter`.
+    MIN_CELLS cells, or particles of this `diameter`.
+    """
+    lengths, density = _filled(scene, position, narrowest)
+    min_width = max(narrowest, (PER_CELL[len(lengths)] / density) ** (1.0 / len(lengths)))
+    min_length = max(min_width, diameter)
+    min_counts = [MIN_CELLS if length is None else 1 for length in scene.box]
+    lengths = [max(length, n * min_length) for length, n in zip(lengths, min_counts, strict=True)]
+    counts = tuple(max(1, math.floor(length / min_width)) for length in lengths)
+    return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
+
+
+def _filled(scene, position, narrowest):
+    """Return the lengths that the gas fills along each axis, in a, and its density per a^D.
+
+    The density of a layer is as at its contacts. `narrowest` is the minimum width of cells.
     """
     heights = np.ptp(position, axis=0) + narrowest
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
     density = (
         len(position) / math.prod(lengths) * (LAYER_COMPRESSION if scene.box[-1] is None else 1.0)
     )
-    volume = PER_CELL[len(lengths)] / density
-    min_width = max(narrowest, volume ** (1.0 / len(lengths)))
-    min_counts = [MIN_CELLS if length is None else 1 for length in scene.box]
-    min_length = max(min_width, diameter)
-    lengths = [max(length, n * min_length) for length, n in zip(lengths, min_counts, strict=True)]
-    counts = tuple(max(1, math.floor(length / min_width)) for length in lengths)
-    return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
+    return lengths, density
 
 
 def _swept_state(scene, number, dimension, precision):

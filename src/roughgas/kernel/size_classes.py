@@ -13,15 +13,11 @@ other, and a cell becomes near for both at once.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from roughgas.compiling.jit import jit
 from roughgas.compiling.lanes import assume_nonnegative
-from roughgas.kernel.state import NOBODY, SizeClasses
+from roughgas.kernel.state import NOBODY
 
 ORIGIN = 0.38196601125  # of the cells, in finest widths: no lattice has many sites on their edges
-LEVELS = 20  # of grids, at most
-WIDTH = 0.7  # of a cell where particles are rare, over the largest diameter of its class
 
 
 class Grid(NamedTuple):
@@ -91,7 +87,7 @@ def list_near_cells(cells, candidates, begin, home, home_class, axis, step):
     cells that become near are listed; all near cells are listed if `axis` is negative.
     """
     number = begin
-    for k in range(len(cells.classes.level)):
+    for k in range(int(home_class == 0), len(cells.classes.level)):
         number = _list_class(cells, candidates, number, home, home_class, k, axis, step)
     return number
 
@@ -160,43 +156,3 @@ def append_particle(entries, length, j):
     """Append particle j to the entries, unless it is NOBODY; return the new length."""
     entries[assume_nonnegative(length)] = j
     return length + int(j != NOBODY)
-
-
-# ------------------------------------------------------------------ choice of the classes
-
-
-def hierarchy(counts, widths, radius, margin):
-    """Return numbers and widths of the finest cells, and the SizeClasses; None for a single class.
-
-    `counts` and `widths` describe cells that suit the smallest particles. Particles of the radii
-    `radius` (N,) may touch at `margin`/2 times the sum of their radii. None if the sizes are too
-    similar for several grids, or the box is too narrow for them.
-    """
-    limits = min(widths) * 2.0 ** (np.arange(1, LEVELS) - 0.5)
-    level = (WIDTH * margin * radius[:, None] > limits).sum(axis=1)
-    for highest in range(level.max(), 0, -1):
-        result = _with_levels(counts, widths, radius, np.minimum(level, highest), margin)
-        if result is not None:
-            return result
-    return None
-
-
-def _with_levels(counts, widths, radius, level, margin):
-    """Return numbers and widths of the finest cells, and the SizeClasses of particles with a level.
-
-    `level` (N,) has the levels of the particles. None if the box is too narrow: two near cells
-    should span at most half of it, so that only one image of a particle can be met.
-    """
-    levels, size = np.unique(level), 1 << level.max()
-    whole = tuple(n // size * size for n in counts)
-    if 0 in whole:
-        return None
-    widths = tuple(n * width / m for n, width, m in zip(counts, widths, whole, strict=True))
-    largest = np.array([radius[level == k].max() for k in levels])
-    sums = 0.5 * margin * (largest[:, None] + largest)
-    reach = np.ceil(sums[:, :, None] / np.array(widths)).astype(np.int64)
-    if any(2 * (2 * size + reach[-1, -1, k]) > n for k, n in enumerate(whole)):
-        return None
-    cells = [np.prod([n >> k for n in whole]) for k in levels]
-    first_cell = np.concatenate([[0], np.cumsum(cells)]).astype(np.int64)
-    return whole, widths, SizeClasses(largest, levels.astype(np.int64), ORIGIN / (1 << levels), first_cell[:-1], reach), int(first_cell[-1])
