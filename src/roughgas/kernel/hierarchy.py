@@ -18,7 +18,7 @@ CONTACT, CROSSING = 150.0, 120.0  # ns for a contact of a particle, and for a ch
 CELL, CANDIDATE, CLASS = 3.0, 10.0, 20.0  # ns for a near cell, a candidate, and a further class
 WORTHWHILE = 0.9  # maximum time with several classes, relative to a single grid
 WIDTHS = tuple(2.0 ** (k / 12.0) for k in range(13))  # tried, over the smallest possible width
-COARSENESS = (0, 1, 2)  # tried: how often cells of larger particles are halved
+COARSENESS = (0, 1, 2, 3)  # tried: how often cells of larger particles are halved
 
 
 class Composition(NamedTuple):
