@@ -23,7 +23,12 @@ from roughgas.scene.settings import scene_settings
 RUNS = 5
 RATIOS = (1.0, 2.0, 5.0, 10.0, 20.0)
 SETTLING_COLLISIONS, MEASURED_COLLISIONS = 5, 10  # per particle
-SCHEMES = {"chosen": (0, None), "classes": (0, math.inf), "single grid": (0, 0.0), "sweep": (10**9, 0.0)}
+SCHEMES = {
+    "chosen": (0, None),
+    "classes": (0, math.inf),
+    "single grid": (0, 0.0),
+    "sweep": (10**9, 0.0),
+}
 """Limits of the number of swept particles, and of the time with classes over that of one grid."""
 
 
@@ -45,7 +50,9 @@ def main() -> None:
         gas = mixture(options.dimension, options.particles, options.packing, ratio)
         rates = compare(gas, options.schemes, options.runs)
         medians = [statistics.median(column) for column in zip(*rates, strict=True)]
-        gains = [statistics.median(row[0] / row[k] for row in rates) for k in range(1, len(rates[0]))]
+        gains = [
+            statistics.median(row[0] / row[k] for row in rates) for k in range(1, len(rates[0]))
+        ]
         cells = [*(f"{rate:.3g}" for rate in medians), *(f"{gain:.2f}" for gain in gains)]
         number = gas.species[0].number
         print(f"| 1 : {ratio:g} | {number} |", " | ".join(cells), "|", flush=True)

@@ -47,8 +47,8 @@ from roughgas.kernel.particles import (
     image_numbers,
     image_shift_at,
     largest_of,
-    radius_of,
     position_and_velocity,
+    radius_of,
     shifted,
 )
 from roughgas.kernel.size_classes import (
@@ -148,16 +148,14 @@ def assign_cell(state, scene, i, time):
 def _relative_to_cell(state, scene, i, time, grid, home):
     """Return particle i's position relative to the centre of its cell, and its velocity, at `time`.
 
-    `home` are the indices of the cell along the axes of its grid. Under shear the velocity is relative to the
-    row of cells, which slides.
+    `home` are the indices of the cell along the axes of its grid. Under shear the velocity is
+    relative to the row of cells, which slides.
     """
     cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
     image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
     position, velocity = _relative_to_row(image_shift, cells, home[1], position, velocity)
-    middle = tuple(
-        grid.widths[k] * (home[k] + grid.origin + 0.5) for k in range(len(scene.box))
-    )
+    middle = tuple(grid.widths[k] * (home[k] + grid.origin + 0.5) for k in range(len(scene.box)))
     d = subtract(position, middle)
     return shifted(
         d, velocity, image_numbers(d, cells.periods, image_shift), cells.periods, image_shift
