@@ -71,7 +71,7 @@ def test_the_kernel_makes_the_same_collisions(case, in_classes):
 
 LARGE_GASES = {
     "disks": (settings("gas", box=[130, 130]) | binary(12, 400, 7.0), 0.9, 0.2),
-    "spheres": (settings("spheres", box=[50, 50, 50]) | binary(4, 500, 5.0), 0.95, 0.2),
+    "spheres": (settings("spheres", box=[84, 84, 84]) | binary(8, 1500, 5.0), 0.95, 0.2),
     "walled": (settings("walled", box=[100, "open"]) | binary(12, 400, 6.0), 0.9, 0.2),
 }
 

@@ -11,6 +11,9 @@ particles a period away are candidates, and never met. Under shear each row of c
 mean flow, row k of n by about (k + 1/2)/n - 1/2 of the image shift: rows slide past each other
 slowly, and past the images no faster.
 
+In a mixture of very different sizes each particle has a cell in the grid of its size class, and its
+candidates are all particles in near cells of every grid (size_classes.py).
+
 In a dense layer (Scene.lists) a particle collides with its neighbours many times before any of them
 moves away. There each particle has a neighbour list. It is assigned a region, a few tenths of a
 radius wide, and its list has all particles with regions so near that the two may meet while both
