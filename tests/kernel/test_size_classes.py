@@ -204,6 +204,6 @@ def test_the_choice_does_not_depend_on_the_order_of_the_particles():
     shuffled = bodies._replace(radius=bodies.radius[order], mass=bodies.mass[order])
     position = state.trajectory[:, :2]
     grids = [layout._grids(scene, position, b, 2.002 * 10.0) for b in (bodies, shuffled)]
-    for one, other in zip(grids[0][2], grids[1][2], strict=True):
-        assert np.array_equal(one, other)
+    for array, array_of_shuffled in zip(grids[0][2], grids[1][2], strict=True):
+        assert np.array_equal(array, array_of_shuffled)
     assert grids[0][:2] == grids[1][:2]

@@ -5,8 +5,8 @@ each class of radii has a separate grid, a hierarchical grid as of V. Ogarko and
 Phys. Commun. 183, 931 (2012). A cell of a class consists of 2^level cells of the finest grid along
 each axis; the level grows with the radius. Each particle has one cell, in the grid of its class.
 
-Two cells are near if particles of their classes may touch while both stay inside: if no more than
-`reach` finest cells are between them along any axis. A prediction lists the particles in all near
+Two cells are near if particles of their classes may touch while both stay inside: if fewer than
+`reach` finest cells are between them along each axis. A prediction lists the particles in all near
 cells of every grid. Nearness is symmetric, in whole numbers: both particles of a pair list each
 other, and a cell becomes near for both at once.
 """

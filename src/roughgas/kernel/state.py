@@ -109,7 +109,7 @@ class SizeClasses(NamedTuple):
     level: np.ndarray  # (classes,) a cell consists of 2^level cells of the finest grid on each axis
     origin: np.ndarray  # (classes,) of the cells, in their widths
     first_cell: np.ndarray  # (classes,) index in Cells.first of the first cell of each grid
-    reach: np.ndarray  # (classes, classes, D) finest cells along each axis between near cells
+    reach: np.ndarray  # (classes, classes, D) near cells have fewer finest cells between them
 
 
 class Cells(NamedTuple):
