@@ -123,4 +123,5 @@ def present(scene, state):
     periods_out = np.floor(position / periods) * [length is not None for length in scene.box]
     if scene.effects.shear is not None:
         velocity[:, 0] -= scene.effects.shear.velocity * periods_out[:, 1]
-    return position - periods_out * periods, velocity, state.spin.copy()
+    spin = None if state.spin is None else state.spin.copy()
+    return position - periods_out * periods, velocity, spin

@@ -6,7 +6,7 @@
 Prints a row for each gas: contacts per second of CPU time by the sweep and in cells, each relative
 to the faster, and the scheme that the kernel chooses; then the break-even numbers for BREAK_EVEN of
 kernel/scheme.py. The schemes run in turns, from the same state of a smooth elastic gas. At a ratio
-of radii other than 1 half of the particles are large.
+of radii other than 1 small and large particles fill equal volumes.
 """
 
 import argparse
@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.scenes import advance, present
+from benchmarks.sizes import mixture
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.scheme import CELLS, CHEAPEST, SWEEP
 from roughgas.kernel.state import COLLISIONS, State
@@ -35,7 +36,7 @@ TOLERANCE = 1.1  # of the chosen scheme's cost over the cheaper scheme's
 
 
 class Gas(NamedTuple):
-    """A smooth elastic gas in a periodic box; half of its particles are larger by `ratio`."""
+    """A smooth elastic gas in a periodic box; at a `ratio` of radii large particles fill half."""
 
     dimension: int
     packing: float
@@ -44,17 +45,14 @@ class Gas(NamedTuple):
 
     def scene(self):
         """Return scene and settings of the gas."""
-        mean_volume = 0.5 * (1.0 + self.ratio**self.dimension)
-        unit_sphere = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
-        side = (self.number * unit_sphere * mean_volume / self.packing) ** (1.0 / self.dimension)
-        raw = {
-            "particles": self.number,
-            "box": [side] * self.dimension,
-            "effects": {"spin": {"inertia": 0.4}},
-        }
         if self.ratio != 1.0:
-            raw["species"] = [{"fraction": 0.5}, {"fraction": 0.5, "radius": self.ratio}]
-        settings = scene_settings(raw)
+            settings = mixture(self.dimension, self.number, self.packing, self.ratio)
+            return build(settings, 1.0, -1.0), settings
+        unit_sphere = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
+        side = (self.number * unit_sphere / self.packing) ** (1.0 / self.dimension)
+        settings = scene_settings(
+            {"particles": self.number, "box": [side] * self.dimension, "effects": {}}
+        )
         return build(settings, 1.0, -1.0), settings
 
 
@@ -107,8 +105,10 @@ def measure(gas: Gas) -> tuple[float, float, int]:
 
 
 def rows_of(scene: Scene, state: State):
-    """Return positions, velocities, spins and bodies of all particles, at the present."""
-    return *present(scene, state), state.bodies
+    """Return positions, velocities, zero spins and bodies of all particles, at the present."""
+    position, velocity, _ = present(scene, state)
+    spin = np.zeros((len(position), 2 * len(scene.box) - 3))
+    return position, velocity, spin, state.bodies
 
 
 def cost(scene: Scene, state: State) -> float:

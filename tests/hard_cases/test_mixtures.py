@@ -8,6 +8,7 @@ import schemes
 from brute_force import begin, largest_overlap, run, scene_of, settings
 
 from roughgas.effects.species import UNIFORM
+from roughgas.kernel import hierarchy
 from roughgas.kernel.scheme import MIN_CELLS
 from roughgas.kernel.state import COLLISIONS
 from roughgas.simulation.energy_balance import balance
@@ -64,16 +65,19 @@ def test_masses_may_differ_by_1e9(margins):
 
 @pytest.mark.slow  # a kernel that no other test compiles
 def test_a_lone_large_particle_meets_all_small_ones(margins, monkeypatch):
-    """In full among a million, so that a cell has a thousand particles."""
+    """In a single grid, in full among a million, so that a cell has a thousand particles; and with
+    a grid for each class of sizes."""
     number = margins.size(1500, 1_000_000)
     side = 4.0 * math.sqrt(number)
     radius = min(side / (2.1 * MIN_CELLS), 20.0)
     species = [{"number": 1, "radius": radius}, {"number": number}]
     schemes.use(monkeypatch, "cells")
-    state = check_gas(margins, number + 1, [side, side], species, 2000)
-    assert state.cells is not None
-    largest_cell = np.bincount(state.cells.home, minlength=len(state.cells.first)).max()
-    assert largest_cell > 20
+    largest_cells = []
+    for worthwhile in (0.0, math.inf):
+        monkeypatch.setattr(hierarchy, "WORTHWHILE", worthwhile)
+        state = check_gas(margins, number + 1, [side, side], species, 2000)
+        largest_cells.append(np.bincount(state.cells.home).max())
+    assert largest_cells[0] > 20 and state.cells.classes is not None
 
 
 def test_a_packed_polydisperse_box_stays_without_overlap(margins):

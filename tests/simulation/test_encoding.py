@@ -56,6 +56,7 @@ MIXTURE = {
         {"fraction": 0.5, "radius": 1.5, "mass": 2.0, "restitution": 0.8},
     ]
 }
+SIZES = {"species": [{"number": 12, "radius": 10.0}, {"number": 588}]}
 
 
 GASES = {
@@ -71,6 +72,7 @@ GASES = {
     "heated in cells": settings("heated", 600, [190, 190]),
     "mixture": settings("gas", 40, [30, 30]) | MIXTURE,
     "mixture in cells": settings("gas", 600, [220, 220]) | MIXTURE,
+    "sizes in cells": settings("gas", 600, [170, 170]) | SIZES,
     "walled": settings("walled", 40, [20, "open"]),
     "viscoelastic": settings("viscoelastic", 40, [50, 50]),
     "shaken": settings("shaken", 40, [25, 25]),

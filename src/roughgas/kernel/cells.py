@@ -11,6 +11,9 @@ particles a period away are candidates, and never met. Under shear each row of c
 mean flow, row k of n by about (k + 1/2)/n - 1/2 of the image shift: rows slide past each other
 slowly, and past the images no faster.
 
+In a mixture of very different sizes each particle has a cell in the grid of its size class, and its
+candidates are all particles in near cells of every grid (size_classes.py).
+
 In a dense layer a particle collides with its neighbours many times before any of them moves away.
 With the scheme LISTS each particle has a neighbour list. It is assigned a region, a few tenths of
 a radius wide, and its list has all particles with regions so near that the two may meet while both
@@ -48,12 +51,21 @@ from roughgas.kernel.particles import (
     image_shift_at,
     largest_of,
     position_and_velocity,
+    radius_of,
     shifted,
+)
+from roughgas.kernel.size_classes import (
+    ORIGIN,
+    append_particle,
+    grid_of_cell,
+    grid_of_radius,
+    indices_in,
+    list_near_cells,
+    wrapped,
 )
 from roughgas.kernel.state import ALIGNED, NOBODY, PREDICTIONS, SPAN
 
 ALL_AXES = -1
-ORIGIN = 0.38196601125  # of the cells, in their widths: no lattice has many sites on their edges
 ALIGN_EVERY = 2  # predictions per particle
 BATCH = tuple(range(4))  # particles whose followers are read before any is appended to a list
 
@@ -84,10 +96,11 @@ def _list_in_cells(state, scene, i, begin, time):
     """
     agenda, cells = state.agenda, state.cells
     leaves_cell = time >= cells.leave[i]
-    axis, step = _change_cell(state, scene, i, time) if leaves_cell else (ALL_AXES, 0)
-    home = cell_indices(cells, i)
-    d, u = _relative_to_cell(state, scene, i, time, home)
-    cells.leave[i], cells.heading[i] = _exit_from(scene, time, d, u, cells.widths)
+    grid = grid_of_cell(cells, cells.home[i])
+    axis, step = _change_cell(state, scene, i, time, grid) if leaves_cell else (ALL_AXES, 0)
+    home = indices_in(grid, cells.home[i])
+    d, u = _relative_to_cell(state, scene, i, time, grid, home)
+    cells.leave[i], cells.heading[i] = _exit_from(scene, time, d, u, grid.widths)
     image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
     only_new_cells = (
         leaves_cell and state.trajectory[i, 2 * len(scene.box)] < time < agenda.complete_until[i]
@@ -101,7 +114,12 @@ def _list_in_cells(state, scene, i, begin, time):
     if not only_new_cells:
         axis = ALL_AXES
         clear_contacts(agenda, i, time + horizon)
-    return _list_surroundings(state, home, begin, image_shift, horizon, axis, step)
+    candidates, number = state.shortlist.found, begin
+    if grid.size_class == 0:
+        number = _list_adjacent(cells, candidates, begin, home, image_shift, horizon, axis, step)
+    if cells.classes is not None:
+        number = list_near_cells(cells, candidates, number, home, grid.size_class, axis, step)
+    return _list_followers(cells, candidates, begin, number)
 
 
 @jit
@@ -119,28 +137,28 @@ def assign_cell(state, scene, i, time):
         cells.neighbours.number[i] = 0
     image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, image_shift)
-    home = 0
+    grid, home = grid_of_radius(cells, radius_of(state.bodies, i)), 0
     for k in range(len(position) - 1, -1, -1):
-        column = math.floor(position[k] / cells.widths[k] - ORIGIN)
-        home = home * cells.counts[k] + wrapped(column, cells.counts[k])
-    cells.home[i] = home
-    _correct_column(state, scene, i, time)
+        column = math.floor(position[k] / grid.widths[k] - grid.origin)
+        home = home * grid.counts[k] + wrapped(column, grid.counts[k])
+    cells.home[i] = grid.first_cell + home
+    _correct_column(state, scene, i, time, grid)
     cells.leave[i] = math.inf
     push_front(cells.first, cells.following, cells.home[i], i)
 
 
 @jit
-def _relative_to_cell(state, scene, i, time, home):
+def _relative_to_cell(state, scene, i, time, grid, home):
     """Return particle i's position relative to the centre of its cell, and its velocity, at `time`.
 
-    `home` are the indices of the cell along the axes. Under shear the velocity is relative to the
-    row of cells, which slides.
+    `home` are the indices of the cell along the axes of its grid. Under shear the velocity is
+    relative to the row of cells, which slides.
     """
-    cells, widths = state.cells, state.cells.widths
+    cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
     image_shift = image_shift_at(hooks.image_shift(scene.effects, state), time)
     position, velocity = _relative_to_row(image_shift, cells, home[1], position, velocity)
-    middle = tuple(widths[k] * (home[k] + ORIGIN + 0.5) for k in range(len(widths)))
+    middle = tuple(grid.widths[k] * (home[k] + grid.origin + 0.5) for k in range(len(scene.box)))
     d = subtract(position, middle)
     return shifted(
         d, velocity, image_numbers(d, cells.periods, image_shift), cells.periods, image_shift
@@ -160,16 +178,6 @@ def _relative_to_row(image_shift, cells, row, position, velocity):
         (position[0] - height * image_shift[0],) + position[1:],
         (velocity[0] - height * image_shift[1],) + velocity[1:],
     )
-
-
-@jit
-def cell_indices(cells, i):
-    """Return the index of particle i's cell along each axis, D integers."""
-    home, across = assume_nonnegative(int(cells.home[i])), assume_nonnegative(cells.counts[0])
-    level = assume_nonnegative(across * cells.counts[1])
-    if len(cells.counts) == 2:
-        return home % across, home // across
-    return home % across, home % level // across, home // level
 
 
 @jit
@@ -240,61 +248,67 @@ def _fall_out(gravity, d, u, half):
 
 
 @jit
-def _change_cell(state, scene, i, time):
-    """Move particle i to the adjacent cell that it enters at `time`; return the axis and the step.
+def _change_cell(state, scene, i, time, grid):
+    """Move particle i to the adjacent cell of its grid that it enters at `time`.
 
-    The step is -1 or 1.
+    Return the axis and the step, -1 or 1.
     """
     cells, heading = state.cells, int(state.cells.heading[i])
     axis, step = heading // 2, 2 * (heading % 2) - 1
     unlink(cells.first, cells.following, cells.home[i], i)
-    home = cell_indices(cells, i)
-    cells.home[i] += _index_term(cells.counts, home, axis, step) - _index_term(
-        cells.counts, home, axis, 0
-    )
+    home, counts = indices_in(grid, cells.home[i]), grid.counts
+    cells.home[i] += _index_term(counts, home, axis, step) - _index_term(counts, home, axis, 0)
     if axis == 1:
-        _correct_column(state, scene, i, time)
+        _correct_column(state, scene, i, time, grid)
     push_front(cells.first, cells.following, cells.home[i], i)
     return axis, step
 
 
 @jit
-def _correct_column(state, scene, i, time):
+def _correct_column(state, scene, i, time, grid):
     """Correct the column of particle i's cell at `time`, after a change of row, where rows
     slide."""
     if active(scene.effects, "image_shift"):
-        cells, home = state.cells, cell_indices(state.cells, i)
-        d, _ = _relative_to_cell(state, scene, i, time, home)
+        cells, home = state.cells, indices_in(grid, state.cells.home[i])
+        d, _ = _relative_to_cell(state, scene, i, time, grid, home)
         column = (home[0] + round(d[0] / cells.widths[0])) % cells.counts[0]
         cells.home[i] += column - home[0]
 
 
 @jit
-def wrapped(k, count):
-    """Return cell index k wrapped into [0, count), along an axis of `count` cells.
+def _list_surroundings(state, i, begin):
+    """Write the particles in i's cell and all adjacent ones to the shortlist; return the end index.
 
-    k may be out of this range by up to one period.
+    The shortlist is filled from index `begin` on.
     """
-    return k + count if k < 0 else k - count if k >= count else k
+    cells, candidates = state.cells, state.shortlist.found
+    home = indices_in(grid_of_cell(cells, cells.home[i]), cells.home[i])
+    number = _list_adjacent(cells, candidates, begin, home, None, 0.0, ALL_AXES, 0)
+    return _list_followers(cells, candidates, begin, number)
 
 
 @jit
-def _list_surroundings(state, home, begin, image_shift, duration, axis, step):
-    """Write the particles around a cell to the shortlist, from index `begin` on; return the end.
+def _list_adjacent(cells, candidates, begin, home, image_shift, duration, axis, step):
+    """Write the first particle of each cell around a cell to the candidates; return the end index.
 
-    The cells are `home` (indices along the axes) and all adjacent ones, if `axis` is ALL_AXES, else
-    only the adjacent ones a `step` further along the axis. Under shear rows slide by `image_shift`,
-    and candidates hold for `duration` from now. The first particle of each cell is written, then
-    the followers of written particles, without data-dependent branches.
+    The candidates are filled from index `begin` on. The cells are `home` (indices along the axes)
+    and all adjacent ones, if `axis` is ALL_AXES, else only the adjacent ones a `step` further along
+    the axis. Under shear rows slide by `image_shift`, and candidates hold for `duration` from now.
     """
-    cells, candidates, number = state.cells, state.shortlist.found, begin
-    if axis == ALL_AXES:
-        for slab in range(-1, 2):
-            number = _list_slab(
-                cells, candidates, number, home, len(home) - 1, slab, image_shift, duration
-            )
-    else:
-        number = _list_slab(cells, candidates, number, home, axis, step, image_shift, duration)
+    if axis != ALL_AXES:
+        return _list_slab(cells, candidates, begin, home, axis, step, image_shift, duration)
+    number, last = begin, len(home) - 1
+    for slab in range(-1, 2):
+        number = _list_slab(cells, candidates, number, home, last, slab, image_shift, duration)
+    return number
+
+
+@jit
+def _list_followers(cells, candidates, begin, number):
+    """Append all followers of the candidates from index `begin` to `number`; return the end.
+
+    The first particle of each cell is followed by the others without data-dependent branches.
+    """
     k = begin
     while k < number:
         k, number = _append_followers(cells.following, candidates, number, k, BATCH)
@@ -326,7 +340,7 @@ def _list_slab(cells, candidates, number, home, axis, step, image_shift, duratio
         terms_up = y if axis == 2 else _index_terms(cells.counts, home, 2)
     for n in range(len(terms_up)):
         for m in range(len(terms_across)):
-            number = _append(
+            number = append_particle(
                 candidates,
                 number,
                 cells.first[assume_nonnegative(slab_term + terms_across[m] + terms_up[n])],
@@ -377,19 +391,12 @@ def _list_sliding(cells, candidates, number, home, step, image_shift, duration):
         )
         first %= counts[0]
         for column in range(first, first + number_of_columns):
-            number = _append(
+            number = append_particle(
                 candidates,
                 number,
                 cells.first[assume_nonnegative(row + wrapped(column, counts[0]))],
             )
     return number
-
-
-@jit
-def _append(entries, length, j):
-    """Append particle j to the entries, unless it is NOBODY; return the new length."""
-    entries[assume_nonnegative(length)] = j
-    return length + int(j != NOBODY)
 
 
 @jit
@@ -441,9 +448,7 @@ def _list_members(state, i, begin):
     """
     neighbours, candidates = state.cells.neighbours, state.shortlist.found
     if neighbours.number[i] > LIST_CAPACITY:
-        return _list_surroundings(
-            state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0
-        )
+        return _list_surroundings(state, i, begin)
     for k in range(LIST_CAPACITY):
         candidates[begin + k] = neighbours.members[i, k]
     return begin + int(neighbours.number[i])
@@ -471,7 +476,7 @@ def _list_neighbours(state, scene, i, begin, end):
     index `begin` on is scratch memory.
     """
     neighbours, candidates = state.cells.neighbours, state.shortlist.found
-    number = _list_surroundings(state, cell_indices(state.cells, i), begin, None, 0.0, ALL_AXES, 0)
+    number = _list_surroundings(state, i, begin)
     middle = read(neighbours.middle, i, 0, scene.box)
     distance = MIN_CELL_WIDTH * largest_of(state.bodies)
     lanes = lanes_of(state.shortlist.when)

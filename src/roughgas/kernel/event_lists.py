@@ -20,6 +20,7 @@ from roughgas.compiling.lanes import (
     trailing_zeros,
 )
 from roughgas.kernel.layout import BLOCK, SWEEP_SLOTS
+from roughgas.kernel.size_classes import grid_of_cell
 from roughgas.kernel.state import (
     BOUNDARY,
     HORIZON,
@@ -123,7 +124,8 @@ def _rows_around(state, i):
     box.
     """
     cells, heading, flat = state.cells, int(state.cells.heading[i]), len(state.cells.counts) == 2
-    row, level = cells.counts[0], cells.counts[0] * cells.counts[1]
+    counts = grid_of_cell(cells, cells.home[i]).counts
+    row, level = counts[0], counts[0] * counts[1]
     stride = 1 if heading < 2 else row if heading < 4 else level
     step = stride if heading % 2 == 1 else -stride
     begin = cells.home[i] - 1 + (step if state.agenda.kind[i] < 0 else 0)

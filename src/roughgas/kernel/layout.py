@@ -1,11 +1,22 @@
 """Memory layout of a State."""
 
+import functools
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.kernel import hooks
-from roughgas.kernel.scheme import LISTS, MIN_CELLS, SWEEP, cell_grid, cheapest, density_of
+from roughgas.kernel import hierarchy, hooks
+from roughgas.kernel.scheme import (
+    LISTS,
+    MIN_CELLS,
+    SWEEP,
+    Grid,
+    cell_grid,
+    cheapest,
+    density_of,
+    filling,
+)
 from roughgas.kernel.state import (
     COUNTS,
     NOBODY,
@@ -20,6 +31,7 @@ from roughgas.kernel.state import (
     Neighbours,
     PathCounts,
     Shortlist,
+    SizeClasses,
     State,
     Sweep,
 )
@@ -54,15 +66,13 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     number, dimension = position.shape
     narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
     radii = np.ones(number) if bodies is None else bodies.radius
-    scheme = cheapest(scene, number, density_of(scene, position, radii, narrowest).packing)
-    skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN[dimension]
-    width = narrowest + (skin if scheme == LISTS else 0.0)
-    grid = cell_grid(scene, density_of(scene, position, radii, width), width)
-    if scheme == SWEEP or min(grid.counts) < MIN_CELLS:
+    gas = filling(position, radii)
+    scheme = cheapest(scene, gas, density_of(scene, gas, narrowest).packing)
+    grids = None if scheme == SWEEP else _grids(scene, gas, bodies, narrowest, scheme == LISTS)
+    if grids is None:
         state = _swept_state(scene, number, dimension, precision)
     else:
-        reach = narrowest if scheme == LISTS else None
-        state = _celled_state(scene, number, dimension, precision, grid, reach)
+        state = _celled_state(scene, number, dimension, precision, grids)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -86,6 +96,41 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     state.agenda.kind[:] = NOTHING
     state.clock[SPAN] = 1.0
     return state
+
+
+class Grids(NamedTuple):
+    """Cells of all particles."""
+
+    grid: Grid  # all cells, or the finest ones
+    classes: SizeClasses | None  # None where all particles are in one grid
+    cells: int  # number of cells of all grids
+    reach: float | None  # distance within which listed neighbours may touch; None without lists
+
+
+def _grids(scene, gas, bodies, narrowest, has_lists):
+    """Return the Grids of cells, or None if the box has no room for them.
+
+    `gas` is the Filling of the box, `narrowest` (a) the least width of the cells in a single grid,
+    without the room for neighbour lists. There are no size classes under shear, nor with lists.
+    """
+    bed_or_gas_skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN[len(scene.box)]
+    width = narrowest + (bed_or_gas_skin if has_lists else 0.0)
+    grid = cell_grid(scene, gas, width)
+    cells, reach = math.prod(grid.counts), narrowest if has_lists else None
+    single = Grids(grid, None, cells, reach) if min(grid.counts) >= MIN_CELLS else None
+    if bodies is None or has_lists or scene.effects.shear is not None:
+        return single
+    smallest, largest = MIN_CELL_WIDTH * bodies.radius.min(), MIN_CELL_WIDTH * bodies.radius.max()
+    mixture = hierarchy.composition(bodies, density_of(scene, gas, smallest).number)
+    grid_with = functools.partial(cell_grid, scene, gas, diameter=largest)
+    fastest = hierarchy.fastest(mixture, grid_with, MIN_CELL_WIDTH)
+    if fastest is None:
+        return single
+    one_class = hierarchy.single_grid(mixture, *grid)
+    if single is not None and not hierarchy.is_worthwhile(mixture, fastest, one_class):
+        return single
+    classes = hierarchy.size_classes(mixture, fastest)
+    return Grids(Grid(fastest.counts, fastest.widths), *classes, reach=None)
 
 
 def _swept_state(scene, number, dimension, precision):
@@ -112,13 +157,12 @@ def _swept_state(scene, number, dimension, precision):
     )
 
 
-def _celled_state(scene, number, dimension, precision, grid, reach):
-    """Return an empty state with cells: a cache line for each particle's path, one for its events.
+def _celled_state(scene, number, dimension, precision, grids):
+    """Return an empty state with the cells of Grids.
 
-    `grid` is the Grid of the cells. Neighbour lists are for particles that may touch within the
-    distance `reach`; without it (None) there are none.
+    Each particle has a cache line for its path, and another for its events.
     """
-    counts, widths = grid
+    counts, widths = grids.grid
     fields = _fields(scene, dimension, precision, CELL_SLOTS)
     fields |= {name: (np.int32,) for name in ("home", "following", "later")}
     fields |= {"leave": (float,), "heading": (np.int8,)}
@@ -154,9 +198,10 @@ def _celled_state(scene, number, dimension, precision, grid, reach):
             counts=counts,
             widths=widths,
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
-            first=np.full(math.prod(counts), NOBODY, np.int32),
+            first=np.full(grids.cells, NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave", "heading")},
-            neighbours=None if reach is None else _neighbours(number, widths, reach),
+            neighbours=None if grids.reach is None else _neighbours(number, widths, grids.reach),
+            classes=grids.classes,
         ),
     )
 

@@ -19,6 +19,7 @@ BREAK_EVEN = {  # dimension -> packing fractions, and the N up to which a sweep 
     3: ((0.001, 0.01, 0.05, 0.2, 0.5), (2600, 1400, 800, 500, 320)),
 }
 BED_PACKING = 0.2  # for this choice, of a gas with an open top: dense below, dilute above
+SIZE_EXPONENT = 0.12  # of the ratio of radii in the break-even number
 LISTS_FROM = {2: 0.75, 3: 0.45}  # dimension -> packing from which on lists cost less than cells
 # Particles in a cell, where cells are wide enough: a minimum, from the packing DENSE on, and a
 # maximum in dilute gases, where cells of more particles are crossed less often.
@@ -33,6 +34,15 @@ class Grid(NamedTuple):
     widths: tuple[float, ...]
 
 
+class Filling(NamedTuple):
+    """Particles that fill a box."""
+
+    spans: tuple[float, ...]  # between the outermost centres along each axis, in a
+    number: int  # of particles
+    packed_volume: float  # of all particles, in a^D
+    size_ratio: float  # of the largest radius to the smallest
+
+
 class Density(NamedTuple):
     """Density of a gas where most of its contacts occur."""
 
@@ -41,29 +51,34 @@ class Density(NamedTuple):
     packing: float  # fraction of the volume that the particles fill
 
 
-def density_of(scene, position, radii, narrowest):
-    """Return the Density of particles at `position` (N, D) with `radii` (N,), in particle radii a.
-
-    Along an axis without a period the gas ends half of `narrowest` (a) beyond its outermost
-    particles.
-    """
-    dimension, heights = len(scene.box), np.ptp(position, axis=0) + narrowest
-    lengths = tuple(length or height for length, height in zip(scene.box, heights, strict=True))
-    compression = LAYER_COMPRESSION if scene.box[-1] is None else 1.0
-    number = len(radii) / math.prod(lengths) * compression
+def filling(position, radii):
+    """Return the Filling by particles at `position` (N, D) with `radii` (N,), both in a."""
+    dimension = position.shape[1]
     unit_sphere = math.pi if dimension == 2 else 4.0 * math.pi / 3.0
-    return Density(lengths, number, float(number * unit_sphere * np.mean(radii**dimension)))
+    packed_volume = unit_sphere * float(np.sum(radii**dimension))
+    spans = tuple(np.ptp(position, axis=0).tolist())
+    return Filling(spans, len(radii), packed_volume, float(radii.max() / radii.min()))
 
 
-def cheapest(scene, number, packing):
-    """Return the scheme that costs least for `number` particles: SWEEP, CELLS or LISTS.
+def density_of(scene, gas, margin):
+    """Return the Density of a Filling; along an axis without a period it has `margin` (a) more."""
+    axes = zip(scene.box, gas.spans, strict=True)
+    lengths = tuple(period or span + margin for period, span in axes)
+    compression = LAYER_COMPRESSION if scene.box[-1] is None else 1.0
+    volume = math.prod(lengths) / compression
+    return Density(lengths, gas.number / volume, gas.packed_volume / volume)
+
+
+def cheapest(scene, gas, packing):
+    """Return the scheme that costs least for a Filling: SWEEP, CELLS or LISTS.
 
     `packing` is as in Density. A choice of the user (Scene.scheme) is returned as it is.
     """
     if scene.scheme != CHEAPEST:
         return scene.scheme
     dimension, is_bed = len(scene.box), scene.box[-1] is None
-    if number <= break_even(dimension, BED_PACKING if is_bed else packing):
+    few = break_even(dimension, BED_PACKING if is_bed else packing)
+    if gas.number <= few * gas.size_ratio**SIZE_EXPONENT:
         return SWEEP
     effects = scene.effects
     may_have_lists = effects.shear is None and effects.species is None and not is_bed
@@ -85,17 +100,18 @@ def particles_per_cell(dimension, packing):
     return min(most, fewest * max(1.0, (DENSE / packing) ** GROWTH))
 
 
-def cell_grid(scene, density, narrowest):
-    """Return the Grid of cells for a gas of a Density, with `particles_per_cell` or more.
+def cell_grid(scene, gas, narrowest, diameter=0.0):
+    """Return the Grid of cells for a Filling, with `particles_per_cell` or more.
 
     No cell is narrower than `narrowest` (a). A cell holds fewer particles where the box else had no
-    room for MIN_CELLS. Along an open axis the cells fill the initial height of the gas.
+    room for MIN_CELLS. Along an open axis the cells fill the initial height of the gas, and at
+    least MIN_CELLS cells, or particles of this `diameter`.
     """
-    dimension = len(scene.box)
+    dimension, density = len(scene.box), density_of(scene, gas, narrowest)
     volume = particles_per_cell(dimension, density.packing) / density.number
     width = max(narrowest, volume ** (1.0 / dimension))
     lengths = [
-        max(length, MIN_CELLS * width) if period is None else length
+        max(length, MIN_CELLS * max(width, diameter)) if period is None else length
         for period, length in zip(scene.box, density.lengths, strict=True)
     ]
     widths = [max(narrowest, min(width, length / MIN_CELLS)) for length in lengths]

@@ -102,11 +102,21 @@ class Neighbours(NamedTuple):
     # clock's base, and velocity
 
 
+class SizeClasses(NamedTuple):
+    """A grid of cells for each class of radii, from the smallest to the largest particles."""
+
+    radius: np.ndarray  # (classes,) largest radius of each, in a
+    level: np.ndarray  # (classes,) a cell consists of 2^level cells of the finest grid on each axis
+    origin: np.ndarray  # (classes,) of the cells, in their widths
+    first_cell: np.ndarray  # (classes,) index in Cells.first of the first cell of each grid
+    reach: np.ndarray  # (classes, classes, D) near cells have fewer finest cells between them
+
+
 class Cells(NamedTuple):
     """Linked lists of the particles in each cell; cells repeat along every axis, open or not."""
 
-    counts: tuple[int, ...]  # cells along each axis
-    widths: tuple[float, ...]  # of a cell, in a
+    counts: tuple[int, ...]  # cells along each axis; of the finest grid, if there are several
+    widths: tuple[float, ...]  # of such a cell, in a
     periods: tuple[float, ...]  # counts * widths
     first: np.ndarray  # (cells,) first particle of each cell's list
     following: np.ndarray  # (N,) the next particle of the same list
@@ -114,6 +124,7 @@ class Cells(NamedTuple):
     leave: np.ndarray  # (N,) when the particle leaves its cell, or its region
     heading: np.ndarray  # (N,) its side in the direction of motion: 2 * axis, plus 1 if upwards
     neighbours: Neighbours | None  # None where candidates are taken from the adjacent cells
+    classes: SizeClasses | None  # None where all particles are in one grid
 
 
 class Shortlist(NamedTuple):
@@ -170,6 +181,8 @@ class State(NamedTuple):
 
 SAVED_NAMES = {"particle_times": "moments"}
 """Names of arrays in checkpoints and datasets, where they differ from those of fields."""
+CONSTANTS = {"classes"}
+"""Fields whose arrays follow from the scene and its bodies, and are not saved."""
 MAX_CHANGES = 2**31 - 1  # of a particle's velocity
 MAX_EVENTS = 2**60  # more than in any run; sums of a few still fit in 64 bits
 FARTHEST_DAY = 2**62  # of a calendar

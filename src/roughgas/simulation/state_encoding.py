@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.kernel.state import SAVED_NAMES, State
+from roughgas.kernel.state import CONSTANTS, SAVED_NAMES, State
 from roughgas.scene import Scene
 from roughgas.simulation.state_validation import faults
 
@@ -25,13 +25,13 @@ class UnusableCheckpoint(ValueError):
 def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
     """Yield (dotted name, array) for every array in nested NamedTuples, such as the kernel's State.
 
-    `prefix` is put before the names. None and plain tuples are left out: values of the latter
+    `prefix` is put before the names. None, plain tuples and CONSTANTS are left out: their values
     follow from the scene.
     """
     for name, field in zip(state._fields, state, strict=True):
         if isinstance(field, np.ndarray):
             yield prefix + name, field
-        elif hasattr(field, "_fields"):
+        elif hasattr(field, "_fields") and name not in CONSTANTS:
             yield from arrays_of(field, f"{prefix}{SAVED_NAMES.get(name, name)}.")
 
 
@@ -101,6 +101,6 @@ def _with_arrays(struct: Any, saved: Mapping[str, np.ndarray], prefix: str = "")
     for name, value in zip(struct._fields, struct, strict=True):
         if isinstance(value, np.ndarray):
             fields[name] = saved[prefix + name]
-        elif hasattr(value, "_fields"):
+        elif hasattr(value, "_fields") and name not in CONSTANTS:
             fields[name] = _with_arrays(value, saved, f"{prefix}{SAVED_NAMES.get(name, name)}.")
     return struct._replace(**fields)
