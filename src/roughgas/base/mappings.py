@@ -30,8 +30,8 @@ def merged(
     return result
 
 
-def shared_entries(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entries that two mappings share, nested mappings key by key."""
+def shared_entries(first: Record, second: Record) -> NamedValues:
+    """Return the entries that two records share, nested mappings key by key."""
     shared = {}
     for key in first.keys() & second.keys():
         value, other = first[key], second[key]

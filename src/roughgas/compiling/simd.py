@@ -257,13 +257,12 @@ def gather(lowering, array, column, rows):
 @operation(lambda array, rows, pattern: types.UniTuple(_doubles(rows), pattern.count))
 def gather_rows(lowering, array, rows, pattern):
     """Whole rows are loaded, and transposed in registers: there are fewer loads than numbers."""
-    gathered = lowering.result_type
-    columns = [
-        column
-        for first in range(0, gathered.count, rows.type.count)
-        for column in _gather_columns(lowering, array, rows, first)
-    ]
-    return lowering.context.make_tuple(lowering.builder, gathered, columns[: gathered.count])
+    gathered = ir.Constant(lowering.context.get_value_type(lowering.result_type), ir.Undefined)
+    for first in range(0, lowering.result_type.count, rows.type.count):
+        columns = _gather_columns(lowering, array, rows, first)
+        for k, column in enumerate(columns[: lowering.result_type.count - first]):
+            gathered = lowering.builder.insert_value(gathered, column, first + k)
+    return gathered
 
 
 def _doubles(lanes):

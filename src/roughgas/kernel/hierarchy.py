@@ -2,8 +2,8 @@
 
 In a dilute gas in equilibrium the rates of contacts and of changes of cell follow from radii and
 masses. At each of them a particle's candidates are listed anew. The constants of the estimate were
-fitted to runs of mixtures on a core of Zen 5 (benchmarks/sizes.py); only their ratios matter. The
-choice depends on the particles and the box alone, and is the same on all machines.
+fitted to runs of mixtures on an Intel Xeon of 2023 (benchmarks/sizes.py); only their ratios
+matter. The choice depends on the particles and the box alone, and is the same on all machines.
 
 V. Ogarko and S. Luding, Comput. Phys. Commun. 183, 931 (2012), likewise choose numbers of levels
 and sizes of cells by an estimate, and decide between several grids and one.
