@@ -33,9 +33,9 @@ Neighbours = Annotated[
     described(
         "How possible contacts are found: by a `sweep` over all particles; in `cells`; on "
         "neighbour `lists`, which are faster where particles are close together and move little "
-        "between contacts, as in a `layer`, and slower elsewhere; or by the `cheapest` of sweep "
-        "and cells, which the number of particles and the packing decide. A box without room for "
-        "eight cells along each axis is swept. Paths differ by rounding errors alone."
+        "between contacts, as in a `layer`, and slower elsewhere; or by the `cheapest` scheme, "
+        "which follows from the number of particles, their sizes and the packing. A box without "
+        "room for eight cells along each axis is swept. Paths differ by rounding errors alone."
     ),
 ]
 SpinTemperature = Annotated[
