@@ -26,7 +26,8 @@ def bytes_of_run(experiment, seed=1):
     ("kernel", "particles", "box"),
     [
         ("gas", 160, [60, 60]),
-        pytest.param("gas", 800, [200, 200], marks=pytest.mark.slow),  # in cells
+        pytest.param("gas", 800, [160, 160], marks=pytest.mark.slow),  # in cells
+        pytest.param("spheres", 500, [16, 16, 16], marks=pytest.mark.slow),  # on lists
         pytest.param("rubbed bed", 160, [50, "open"], marks=pytest.mark.slow),
         pytest.param("sheared", 160, [50, 50], marks=pytest.mark.slow),
         pytest.param("heated spheres", 64, [12, 12, 12], marks=pytest.mark.slow),

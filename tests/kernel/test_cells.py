@@ -38,7 +38,7 @@ CASES = {
     "chute on lists": (settings("chute", 40, [20, "open"]) | LISTS, 0.8, 0.2, 7),
     "falling gas": (FALLING, 0.9, 0.2, 1),
     "spheres": (settings("spheres", 40, [17, 17, 17]), 0.98, 0.2, 8),
-    "spheres on lists": (settings("spheres", 80, [20, 20, 20]) | LISTS, 0.98, 0.2, 8),
+    "spheres on lists": (settings("spheres", 80, [22, 22, 22]) | LISTS, 0.98, 0.2, 8),
 }
 SEGMENTS, COLLISIONS = 20, 10
 

@@ -66,3 +66,15 @@ def test_cells_of_a_dilute_gas_hold_more():
             per_cell = number / len(state.cells.first)
             assert particles_per_cell(dimension, packing) == pytest.approx(expected)
             assert expected <= per_cell < expected * (1 + 1.2 * dimension / 12)
+
+
+@pytest.mark.parametrize(("dimension", "packing"), [(2, 0.8), (3, 0.5)])
+def test_a_dense_gas_has_neighbour_lists(dimension, packing):
+    """Not so one half as dense, nor one of two sizes."""
+    number = 2000
+    _, dense = begin(gas(packing, number, dimension), 0.9, 0.2, 1)
+    _, half_as_dense = begin(gas(packing / 2, number, dimension), 0.9, 0.2, 1)
+    sizes = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 0.9}]
+    _, mixture = begin(gas(packing, number, dimension, species=sizes), 0.9, 0.2, 1)
+    assert dense.cells.neighbours is not None
+    assert half_as_dense.cells.neighbours is None and mixture.cells.neighbours is None

@@ -19,6 +19,7 @@ from tests.test_bits import point_of_path
 from roughgas import config
 from roughgas.base import EndedEarlyError
 from roughgas.kernel.hooks import CODES
+from roughgas.kernel.layout import LIST_CAPACITY
 from roughgas.kernel.state import (
     ALIGNED,
     BASE,
@@ -59,20 +60,21 @@ MIXTURE = {
 SIZES = {"species": [{"number": 12, "radius": 10.0}, {"number": 588}]}
 
 
+IN_CELLS = {"neighbours": "cells"}
 GASES = {
     "gas": settings("gas", 40, [25, 25]),
-    "gas in cells": settings("gas", 600, [190, 190]),
+    "gas in cells": settings("gas", 600, [190, 190]) | IN_CELLS,
     "sheared": settings("sheared", 40, [25, 25]),
-    "sheared in cells": settings("sheared", 600, [100, 100]),
+    "sheared in cells": settings("sheared", 600, [100, 100]) | IN_CELLS,
     "bed": settings("bed", 40, [12.5, "open"]),
-    "bed in cells": settings("bed", 600, [100, "open"]),
+    "bed in cells": settings("bed", 600, [100, "open"]) | IN_CELLS,
     "layer": settings("layer", 600, [24, 24, "open"]) | {"neighbours": "lists"},
     "spheres": settings("spheres"),
     "bath": settings("bath", 40, [50, 50]),
-    "heated in cells": settings("heated", 600, [190, 190]),
+    "heated in cells": settings("heated", 600, [190, 190]) | IN_CELLS,
     "mixture": settings("gas", 40, [30, 30]) | MIXTURE,
-    "mixture in cells": settings("gas", 600, [220, 220]) | MIXTURE,
-    "sizes in cells": settings("gas", 600, [170, 170]) | SIZES,
+    "mixture in cells": settings("gas", 600, [220, 220]) | MIXTURE | IN_CELLS,
+    "sizes in cells": settings("gas", 600, [170, 170]) | SIZES | IN_CELLS,
     "walled": settings("walled", 40, [20, "open"]),
     "viscoelastic": settings("viscoelastic", 40, [50, 50]),
     "shaken": settings("shaken", 40, [25, 25]),
@@ -452,7 +454,7 @@ FORGERIES = [
     ),
     (
         "layer",
-        set_entry("cells.neighbours.number", 0, 18),
+        set_entry("cells.neighbours.number", 0, LIST_CAPACITY + 2),
         "cells.neighbours.number is out of range",
     ),
     (

@@ -80,8 +80,7 @@ def cheapest(scene, gas, packing):
     few = break_even(dimension, BED_PACKING if is_bed else packing)
     if gas.number <= few * gas.size_ratio**SIZE_EXPONENT:
         return SWEEP
-    effects = scene.effects
-    may_have_lists = effects.shear is None and effects.species is None and not is_bed
+    may_have_lists = scene.effects.shear is None and gas.size_ratio == 1.0 and not is_bed
     return LISTS if may_have_lists and packing >= LISTS_FROM[dimension] else CELLS
 
 
