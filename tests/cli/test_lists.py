@@ -69,6 +69,7 @@ def test_spellings_of_a_variant_give_the_same_name():
     assert read_point("gas_inertia0.5_r0.9_beta0_seed1.nc").attrs["variant"] == "inertia0.5"
 
 
+@pytest.mark.slow  # compiles a kernel of its own
 def test_a_movie_takes_the_same_lists(monkeypatch):
     figures = []
     monkeypatch.setattr(movies, "write_movie", lambda _, picture, *__: figures.append(picture()[0]))

@@ -168,6 +168,7 @@ def test_paths_continue_through_a_change_of_the_scene():
     assert np.count_nonzero(crossed) > 4
 
 
+@pytest.mark.slow  # compiles a kernel of its own
 def test_a_run_that_counts_paths_has_the_bits_of_one_that_does_not():
     states = []
     bare = settings("sheared", 40, [20, 20])

@@ -66,6 +66,7 @@ def test_reduced_datasets_have_errors_over_seeds():
     assert (gas.fast_stderr > 0.0).all() and (gas.fast_trusted == -1.0).all()
 
 
+@pytest.mark.slow  # compiles a kernel of its own
 def test_in_a_mixture_a_function_sees_all_particles(study):
     file = study / "observables.py"
     file.write_text(OBSERVABLES + "\n\ndef number(frame):\n    return len(frame.mass)\n")
