@@ -105,10 +105,8 @@ def measure(gas: Gas) -> tuple[float, float, int]:
 
 
 def rows_of(scene: Scene, state: State):
-    """Return positions, velocities, zero spins and bodies of all particles, at the present."""
-    position, velocity, _ = present(scene, state)
-    spin = np.zeros((len(position), 2 * len(scene.box) - 3))
-    return position, velocity, spin, state.bodies
+    """Return positions, velocities, spins and bodies of all particles, at the present."""
+    return *present(scene, state), state.bodies
 
 
 def cost(scene: Scene, state: State) -> float:

@@ -95,12 +95,10 @@ def rate(scene, settled, collisions: int, scheme: int, worthwhile: float | None)
     `worthwhile` is the maximum of the estimated time with classes over the time with a single grid,
     None for the kernel's.
     """
-    position, velocity, _ = present(scene, settled)
-    spin = np.zeros((len(position), 2 * len(scene.box) - 3))
     limit = hierarchy.WORTHWHILE
     hierarchy.WORTHWHILE = limit if worthwhile is None else worthwhile
     forced = scene._replace(scheme=scheme)
-    state = new_state(forced, position, velocity, spin, bodies=settled.bodies)
+    state = new_state(forced, *present(scene, settled), bodies=settled.bodies)
     hierarchy.WORTHWHILE = limit
     begin = time.process_time()
     advance(scene, state, collisions=collisions)

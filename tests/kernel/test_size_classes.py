@@ -6,13 +6,12 @@ import math
 import numpy as np
 import pytest
 import schemes
-from brute_force import Comparison, begin, run, scene_of, settings, snapshot
+from brute_force import Comparison, begin, scene_of, settings, snapshot
 from slow_cases import slow_but
 
 from roughgas.kernel import hierarchy, layout, scheme
 from roughgas.kernel.cells import ALL_AXES, assign_cell
 from roughgas.kernel.size_classes import grid_of_cell, indices_in, list_near_cells
-from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 
 
 def species(*numbers_and_radii):
@@ -87,12 +86,7 @@ def test_classes_and_a_single_grid_make_the_same_collisions(name, in_classes, mo
         scene, state = begin(*LARGE_GASES[name], 3)
         states.append(state)
     assert states[0].cells.classes is None and states[1].cells.classes is not None
-    for _ in range(1000):
-        pairs = []
-        for state in states:
-            run(state, scene, 1, collisions=1)
-            pairs.append({int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])})
-        assert pairs[0] == pairs[1]
+    schemes.assert_same_pairs(states, scene, 1000)
     single, classes = (snapshot(state, scene) for state in states)
     assert classes.velocity == pytest.approx(single.velocity, abs=1e-6)
 

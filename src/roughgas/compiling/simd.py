@@ -94,11 +94,15 @@ class Lowering(NamedTuple):
         element, count = (
             (first.element, f"v{first.count}") if hasattr(first, "count") else (first, "")
         )
-        name = f"{name}.{count}{element.intrinsic_name}"
-        function = self.builder.module.globals.get(name)
+        variant = f"{name}.{count}{element.intrinsic_name}"
+        return self.call_variant(variant, result_type, values, **options)
+
+    def call_variant(self, variant, result_type, values, **options):
+        """Return the result of the `variant` of an intrinsic of LLVM, by its complete name."""
+        function = self.builder.module.globals.get(variant)
         if function is None:
             function_type = ir.FunctionType(result_type, [value.type for value in values])
-            function = ir.Function(self.builder.module, function_type, name)
+            function = ir.Function(self.builder.module, function_type, variant)
         return self.builder.call(function, values, **options)
 
     def spread(self, value, argument_type):
@@ -290,15 +294,10 @@ def _gather_columns(lowering, array, rows, first):
 
 def _masked_load(lowering, pointer, mask, vector):
     """Return the items at an address whose lanes are set in the mask; the others are not read."""
-    name = f"llvm.masked.load.v{vector.count}{vector.element.intrinsic_name}.p0"
-    module = lowering.builder.module
-    function = module.globals.get(name)
-    if function is None:
-        signature = [vector.as_pointer(), NUMBER, mask.type, vector]
-        function = ir.Function(module, ir.FunctionType(vector, signature), name)
-    size = 8 if vector.element == ir.DoubleType() else 4
-    nothing = ir.Constant(vector, ir.Undefined)
-    return lowering.builder.call(function, [pointer, NUMBER(size), mask, nothing])
+    variant = f"llvm.masked.load.v{vector.count}{vector.element.intrinsic_name}.p0"
+    alignment = NUMBER(8 if vector.element == ir.DoubleType() else 4)
+    values = [pointer, alignment, mask, ir.Constant(vector, ir.Undefined)]
+    return lowering.call_variant(variant, vector, values)
 
 
 def _transposed(builder, rows):

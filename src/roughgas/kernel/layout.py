@@ -13,7 +13,7 @@ from roughgas.kernel.scheme import (
     SWEEP,
     Grid,
     cell_grid,
-    cheapest,
+    chosen_scheme,
     density_of,
     filling,
 )
@@ -57,17 +57,15 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     surface velocities, in a/T. `precision` is the type of trajectories and spins. Effects that draw
     random numbers start from the numpy generator `rng`, by default with a fixed seed. A scene
     without spin ignores the spins; a scene with several species needs the Bodies. The
-    cheapest scheme finds candidates for contacts, or a sweep where the box has no room for
-    MIN_CELLS along each axis.
+    chosen scheme finds candidates for contacts, or a sweep where the box has no room for cells.
 
     Particles are stored in the order of their positions: their order in memory decides between
     simultaneous events, and results must not depend on how the particles were numbered.
     """
     number, dimension = position.shape
-    narrowest = MIN_CELL_WIDTH if bodies is None else MIN_CELL_WIDTH * bodies.radius.max()
     radii = np.ones(number) if bodies is None else bodies.radius
-    gas = filling(position, radii)
-    scheme = cheapest(scene, gas, density_of(scene, gas, narrowest).packing)
+    gas, narrowest = filling(position, radii), MIN_CELL_WIDTH * radii.max()
+    scheme = chosen_scheme(scene, gas, density_of(scene, gas, narrowest).packing)
     grids = None if scheme == SWEEP else _grids(scene, gas, bodies, narrowest, scheme == LISTS)
     if grids is None:
         state = _swept_state(scene, number, dimension, precision)
@@ -110,19 +108,21 @@ class Grids(NamedTuple):
 def _grids(scene, gas, bodies, narrowest, has_lists):
     """Return the Grids of cells, or None if the box has no room for them.
 
-    `gas` is the Filling of the box, `narrowest` (a) the least width of the cells in a single grid,
-    without the room for neighbour lists. There are no size classes under shear, nor with lists.
+    `gas` is the Filling of the box, `narrowest` (a) the least width of the cells in a single grid:
+    the largest diameter, without the room for neighbour lists. There are no size classes under
+    shear, nor with lists.
     """
-    bed_or_gas_skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN[len(scene.box)]
-    width = narrowest + (bed_or_gas_skin if has_lists else 0.0)
-    grid = cell_grid(scene, gas, width)
+    skin = 0.0
+    if has_lists:
+        skin = BED_SKIN if scene.box[-1] is None else GAS_SKIN[len(scene.box)]
+    grid = cell_grid(scene, gas, narrowest + skin)
     cells, reach = math.prod(grid.counts), narrowest if has_lists else None
     single = Grids(grid, None, cells, reach) if min(grid.counts) >= MIN_CELLS else None
     if bodies is None or has_lists or scene.effects.shear is not None:
         return single
-    smallest, largest = MIN_CELL_WIDTH * bodies.radius.min(), MIN_CELL_WIDTH * bodies.radius.max()
+    smallest = MIN_CELL_WIDTH * bodies.radius.min()
     mixture = hierarchy.composition(bodies, density_of(scene, gas, smallest).number)
-    grid_with = functools.partial(cell_grid, scene, gas, diameter=largest)
+    grid_with = functools.partial(cell_grid, scene, gas, diameter=narrowest)
     fastest = hierarchy.fastest(mixture, grid_with, MIN_CELL_WIDTH)
     if fastest is None:
         return single

@@ -1,4 +1,4 @@
-"""Choice between the two schemes that find candidates for contacts: a sweep over all, and cells.
+"""Choice of the scheme that finds candidates for contacts: a sweep over all, cells, or lists.
 
 The cost of a sweep grows with the number of particles, the cost of cells does not, but in a dilute
 gas particles cross many cells between contacts. The break-even numbers are measured by
@@ -69,10 +69,10 @@ def density_of(scene, gas, margin):
     return Density(lengths, gas.number / volume, gas.packed_volume / volume)
 
 
-def cheapest(scene, gas, packing):
-    """Return the scheme that costs least for a Filling: SWEEP, CELLS or LISTS.
+def chosen_scheme(scene, gas, packing):
+    """Return SWEEP, CELLS or LISTS: the choice of the user, or the scheme that costs least.
 
-    `packing` is as in Density. A choice of the user (Scene.scheme) is returned as it is.
+    `gas` is a Filling, `packing` is as in Density.
     """
     if scene.scheme != CHEAPEST:
         return scene.scheme

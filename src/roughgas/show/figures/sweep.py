@@ -445,8 +445,7 @@ def line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
 def unit_suffix(values: xr.DataArray) -> str:
     """Return the unit of a variable as the end of an axis label, such as " / a"; "" without a
     unit."""
-    unit = unit_of(values.attrs)
-    return _suffix_of(unit)
+    return _suffix_of(unit_of(values.attrs))
 
 
 def _suffix_of(unit: str) -> str:
