@@ -120,8 +120,10 @@ def cost(scene: Scene, state: State) -> float:
 def break_even_of(costs: dict[int, float]) -> float:
     """Return N where the cost of cells over that of the sweep passes 1, on logarithmic scales.
 
-    The costs are fitted by a straight line, weighted towards 1.
+    The costs are fitted by a straight line, weighted towards 1. NaN for a single number.
     """
+    if len(costs) < 2:
+        return math.nan
     numbers, ratios = np.log(list(costs)), np.log(list(costs.values()))
     slope, value = np.polyfit(numbers, ratios, 1, w=1.0 / (0.2 + abs(ratios)))
     return math.exp(-value / slope)
