@@ -32,7 +32,7 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 
-PREFETCHED = 8  # entries of a particle's neighbour list, about all of them
+PREFETCHED = 14  # entries of a particle's neighbour list, about all of them
 FIT_IN_CACHE = 2048  # days of a calendar: prefetching gains nothing for fewer
 FLIGHTS_AHEAD = 2.5  # mean free flights within the horizon
 LAST_DAY = 2.0**62
@@ -86,16 +86,16 @@ def _prefetch_particle(state, i):
         prefetch(state.label, i)
         if state.spin is not None:
             prefetch(state.spin, i)
-    if state.cells.neighbours is not None:
-        prefetch(state.cells.neighbours.members, i)
+    if state.cells.neighbours is not None:  # a row has two cache lines
+        prefetch(state.cells.neighbours.middle, i)
+        prefetch(state.cells.neighbours.number, i)
 
 
 @jit
 def _prefetch_partner(state, i):
     """Prefetch the partner in particle i's next contact, and the heads of adjacent cells' lists."""
-    agenda, cells = state.agenda, state.cells
-    partner = int(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
-    _prefetch_particle(state, partner if agenda.kind[i] >= 0 else i)
+    cells = state.cells
+    _prefetch_particle(state, _partner_of(state, i))
     if cells.neighbours is None:
         rows = _rows_around(state, i)
         for k in range(len(rows)):
@@ -103,12 +103,25 @@ def _prefetch_partner(state, i):
 
 
 @jit
+def _partner_of(state, i):
+    """Return the partner in particle i's next contact; i itself if it has another event next."""
+    agenda = state.agenda
+    partner = int(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
+    return partner if agenda.kind[i] >= 0 else i
+
+
+@jit
 def _prefetch_surroundings(state, i):
-    """Prefetch the particles on the neighbour list of i, or the first ones in adjacent cells."""
+    """Prefetch the particles on the neighbour lists of particle i and its next partner.
+
+    Without lists the first particles in adjacent cells are prefetched.
+    """
     cells = state.cells
     if cells.neighbours is not None:
+        j = _partner_of(state, i)
         for k in range(PREFETCHED):
             prefetch(state.trajectory, cells.neighbours.members[i, k])
+            prefetch(state.trajectory, cells.neighbours.members[j, k])
         return
     rows = _rows_around(state, i)
     for k in range(len(rows)):

@@ -211,12 +211,11 @@ def _neighbours(number, widths, reach):
 
     `widths` are the sides of a cell, `reach` is the distance within which particles may touch.
     """
+    fields = {"middle": (float, len(widths)), "members": (np.int32, LIST_CAPACITY)}
     return Neighbours(
-        middle=np.zeros((number, len(widths))),
         sides=tuple(width - reach for width in widths),
-        members=_interleaved(number, {"members": (np.int32, LIST_CAPACITY)})["members"],
-        number=np.zeros(number, np.int32),
         frame=np.zeros(2),
+        **_interleaved(number, fields | {"number": (np.int32,)}),
     )
 
 
