@@ -2,14 +2,17 @@
 
     python -m benchmarks.schemes
     python -m benchmarks.schemes --dimensions 3 --packings .2 --numbers 300 600 --ratios 1 5
+    python -m benchmarks.schemes --numbers 300 600 1000 --kicks 5 30
 
 Prints a row for each gas: contacts per second of CPU time by the sweep and in cells, each relative
-to the faster, and the scheme that the kernel chooses; then the break-even numbers for BREAK_EVEN of
+to the faster, and the scheme that the kernel chooses; then the break-even numbers for the tables of
 kernel/scheme.py. The schemes run in turns, from the same state of a smooth elastic gas. At a ratio
-of radii other than 1 small and large particles fill equal volumes.
+of radii other than 1 small and large particles fill equal volumes. With kicks a thermostat kicks
+each particle so many times, weakly, between two of its contacts.
 """
 
 import argparse
+import itertools
 import math
 import statistics
 import time
@@ -20,18 +23,19 @@ import numpy as np
 from benchmarks.scenes import advance, present
 from benchmarks.sizes import mixture
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.scheme import CELLS, CHEAPEST, SWEEP
+from roughgas.kernel.scheme import CELLS, CHEAPEST, PACKINGS, SWEEP
 from roughgas.kernel.state import COLLISIONS, State
 from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state
 from roughgas.scene.settings import scene_settings
 
-PACKINGS = (0.001, 0.01, 0.05, 0.2, 0.5)
 NUMBERS = (300, 600, 1000, 3000, 10_000)
-RATIOS = (1.0,)
+RATIOS, KICKS = (1.0,), (0,)
 DIMENSIONS = (2, 3)
 TURNS, SECONDS = 5, 0.2  # of CPU time for a turn of a scheme
 SETTLING = 3  # contacts per particle, before
+WEAK = 1e-12  # power of kicks, in m a^2/T^3: the gas hardly heats up
+COLLISIONS_AT_ONCE = 300
 TOLERANCE = 1.1  # of the chosen scheme's cost over the cheaper scheme's
 
 
@@ -39,9 +43,10 @@ class Gas(NamedTuple):
     """A smooth elastic gas in a periodic box; at a `ratio` of radii large particles fill half."""
 
     dimension: int
+    ratio: float
+    kicks: float  # per contact of a particle
     packing: float
     number: int
-    ratio: float
 
     def scene(self):
         """Return scene and settings of the gas."""
@@ -49,11 +54,22 @@ class Gas(NamedTuple):
             settings = mixture(self.dimension, self.number, self.packing, self.ratio)
             return build(settings, 1.0, -1.0), settings
         unit_sphere = math.pi if self.dimension == 2 else 4.0 * math.pi / 3.0
-        side = (self.number * unit_sphere / self.packing) ** (1.0 / self.dimension)
-        settings = scene_settings(
-            {"particles": self.number, "box": [side] * self.dimension, "effects": {}}
-        )
+        density = self.packing / unit_sphere
+        side = (self.number / density) ** (1.0 / self.dimension)
+        effects = {"thermostat": self.thermostat(density)} if self.kicks else {}
+        raw = {"particles": self.number, "box": [side] * self.dimension, "effects": effects}
+        settings = scene_settings(raw)
         return build(settings, 1.0, -1.0), settings
+
+    def thermostat(self, density):
+        """Return the settings of a thermostat with this number of kicks per contact.
+
+        The contacts of a particle are those of a dilute gas in which each component of the velocity
+        has the variance 1, in a^2/T^2. A particle is kicked twice per interval: as the first one,
+        and as a partner.
+        """
+        contacts = 2.0**self.dimension * math.sqrt(math.pi) * density  # per T
+        return {"power": WEAK, "spin_share": 0, "interval": 2.0 / (self.kicks * contacts)}
 
 
 def main() -> None:
@@ -63,26 +79,28 @@ def main() -> None:
     parser.add_argument("--packings", type=float, nargs="+", default=PACKINGS)
     parser.add_argument("--numbers", type=int, nargs="+", default=NUMBERS)
     parser.add_argument("--ratios", type=float, nargs="+", default=RATIOS)
+    parser.add_argument("--kicks", type=float, nargs="+", default=KICKS)
     options = parser.parse_args()
-    print("| D | ratio | packing | N | sweep | cells | chosen | its cost |\n|" + " --- |" * 8)
+    print(
+        "| D | ratio | kicks | packing | N | sweep | cells | chosen | its cost |\n|" + " --- |" * 9
+    )
     break_evens, worst = [], 0.0
-    for dimension in options.dimensions:
-        for ratio in options.ratios:
-            for packing in options.packings:
-                costs = {}
-                for number in options.numbers:
-                    sweep, cells, chosen = measure(Gas(dimension, packing, number, ratio))
-                    costs[number] = cells / sweep
-                    excess = (sweep if chosen == SWEEP else cells) / min(sweep, cells)
-                    worst = max(worst, excess)
-                    name = "sweep" if chosen == SWEEP else "cells"
-                    print(
-                        f"| {dimension} | {ratio:g} | {packing:g} | {number:,} | {1 / sweep:.3g} "
-                        f"| {1 / cells:.3g} | {name} | {excess:.2f} |",
-                        flush=True,
-                    )
-                break_evens.append((dimension, ratio, packing, break_even_of(costs)))
-    print("\n| D | ratio | packing | a sweep costs less up to N |\n|" + " --- |" * 4)
+    axes = options.dimensions, options.ratios, options.kicks, options.packings
+    for dimension, ratio, kicks, packing in itertools.product(*axes):
+        costs = {}
+        for number in options.numbers:
+            sweep, cells, chosen = measure(Gas(dimension, ratio, kicks, packing, number))
+            costs[number] = cells / sweep
+            excess = (sweep if chosen == SWEEP else cells) / min(sweep, cells)
+            worst = max(worst, excess)
+            name = "sweep" if chosen == SWEEP else "cells"
+            print(
+                f"| {dimension} | {ratio:g} | {kicks:g} | {packing:g} | {number:,} "
+                f"| {1 / sweep:.3g} | {1 / cells:.3g} | {name} | {excess:.2f} |",
+                flush=True,
+            )
+        break_evens.append((dimension, ratio, kicks, packing, break_even_of(costs)))
+    print("\n| D | ratio | kicks | packing | a sweep costs less up to N |\n|" + " --- |" * 5)
     for row in break_evens:
         print("| " + " | ".join(f"{entry:.3g}" for entry in row) + " |")
     print(f"\nThe chosen scheme costs at most {worst:.2f} of the cheaper; limit {TOLERANCE}.")
@@ -113,7 +131,7 @@ def cost(scene: Scene, state: State) -> float:
     """Return the CPU seconds per contact over SECONDS of CPU time."""
     before, begin = int(state.counts[COLLISIONS]), time.process_time()
     while (elapsed := time.process_time() - begin) < SECONDS:
-        advance(scene, state, collisions=max(len(state.changes) // 4, 1000))
+        advance(scene, state, collisions=max(len(state.changes) // 4, COLLISIONS_AT_ONCE))
     return elapsed / (int(state.counts[COLLISIONS]) - before)
 
 

@@ -10,7 +10,7 @@ BREAK_EVENS = {"cells": 0, "sweep": 10_000}
 
 def use(monkeypatch, name, per_cell=None):
     """Find candidates in `cells`, or by a `sweep`; cells may hold `per_cell` particles at least."""
-    monkeypatch.setattr(scheme, "break_even", lambda dimension, packing: BREAK_EVENS[name])
+    monkeypatch.setattr(scheme, "break_even", lambda *density: BREAK_EVENS[name])
     if per_cell is not None:
         monkeypatch.setattr(scheme, "PER_CELL", dict.fromkeys((2, 3), (per_cell, per_cell)))
 

@@ -12,7 +12,7 @@ from roughgas import theory
 from roughgas.effects import walls
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.mathematics import logarithm
-from roughgas.kernel.state import BASE, COLLISIONS, NOW
+from roughgas.kernel.state import BASE, COLLISIONS, NOW, TYPICAL_SPEED
 from roughgas.simulation.energies import energies, ratio
 from roughgas.simulation.energy_balance import balance, imbalance
 from roughgas.statistics.errors import blocking_stderr
@@ -50,6 +50,18 @@ def test_kicks_supply_the_stated_power_and_share(share, interval):
     expected = number * time * power * np.array([1.0 - share, share])
     assert np.all(np.abs(put_in - expected) <= 4.0 * np.sqrt(kicks * np.array(scatter)))
     assert np.all(np.sqrt(kicks * np.array(scatter)) < 0.05 * number * time * power)
+
+
+def test_a_gas_that_heats_up_within_a_span_predicts_no_contacts_of_many_crossings():
+    """The typical speed of the clock is of the cold gas, in which horizons are 20 times longer."""
+    hot = heated(box=(200, 200), power=1000.0, spin_share=0.0, interval=0.02)
+    scene, state = begin(hot, 0.9, 0.2, 5)
+    run(state, scene, 1, interval=2.0)
+    assert state.sweep is not None and state.clock[BASE] == 0.0
+    speed = math.sqrt(np.mean(np.sum(state.trajectory[:, 2:4] ** 2, axis=1)))
+    assert speed > 20.0 * state.clock[TYPICAL_SPEED]
+    horizons = state.agenda.complete_until - state.clock[NOW]
+    assert np.max(horizons) * speed < 2.0 * scene.extent
 
 
 @pytest.mark.slow

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.kernel.scheme import BREAK_EVEN, DENSE, PER_CELL, break_even, particles_per_cell
+from roughgas.kernel.scheme import (
+    BREAK_EVEN,
+    BREAK_EVEN_OF_KICKS,
+    DENSE,
+    PACKINGS,
+    PER_CELL,
+    break_even,
+    particles_per_cell,
+)
 
 
 def gas(packing, number=600, dimension=2, **changes):
@@ -24,10 +32,11 @@ def is_swept(experiment):
 
 
 @pytest.mark.parametrize("dimension", BREAK_EVEN)
-def test_the_break_even_number_falls_with_the_packing(dimension):
-    packings, numbers = BREAK_EVEN[dimension]
-    assert [break_even(dimension, packing) for packing in packings] == list(numbers)
-    everywhere = [break_even(dimension, packing) for packing in np.geomspace(1e-4, 0.9, 50)]
+@pytest.mark.parametrize("kicked", [False, True])
+def test_the_break_even_number_falls_with_the_packing(dimension, kicked):
+    numbers = BREAK_EVEN_OF_KICKS if kicked else BREAK_EVEN[dimension]
+    assert [break_even(dimension, packing, kicked) for packing in PACKINGS] == list(numbers)
+    everywhere = [break_even(dimension, packing, kicked) for packing in np.geomspace(1e-4, 0.9, 50)]
     assert everywhere == sorted(everywhere, reverse=True)
     assert everywhere[0] == numbers[0] and everywhere[-1] == numbers[-1]
 
@@ -41,6 +50,27 @@ def test_particles_are_swept_up_to_the_break_even_number(dimension):
 
 def test_a_dilute_gas_is_swept_where_a_dense_one_is_in_cells():
     assert is_swept(gas(0.001)) and not is_swept(gas(0.5))
+
+
+KICKS = {
+    "thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.1},
+    "langevin": {"drag": 0.1, "spin_drag": 0.1, "temperature": 1.0, "interval": 0.1},
+}
+
+
+@pytest.mark.parametrize("effect", KICKS)
+def test_kicks_let_cells_cost_less_than_a_sweep_at_fewer_particles(effect):
+    few = break_even(2, 0.005, kicked=True)
+    assert few < break_even(2, 0.005) / 3
+    for number, swept in ((few, True), (few + 10, False)):
+        dilute = gas(0.005, number, 2)
+        assert is_swept(dilute)
+        assert is_swept(dilute | {"effects": dilute["effects"] | {effect: KICKS[effect]}}) is swept
+
+
+def test_times_of_contacts_are_no_kicks():
+    dilute = gas(0.005, break_even(2, 0.005, kicked=True) + 10, 2)
+    assert is_swept(dilute | {"effects": dilute["effects"] | {"contact_time": {"duration": 1e-6}}})
 
 
 def test_a_bed_of_five_hundred_is_swept():

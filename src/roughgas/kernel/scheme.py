@@ -1,7 +1,8 @@
 """Choice of the scheme that finds candidates for contacts: a sweep over all, cells, or lists.
 
 The cost of a sweep grows with the number of particles, the cost of cells does not, but in a dilute
-gas particles cross many cells between contacts. The break-even numbers are measured by
+gas particles cross many cells between contacts. Kicks of an effect undo this advantage of a sweep:
+each predicts the contacts of its particles anew. The break-even numbers are measured by
 `python -m benchmarks.schemes`. They are the same on all machines, so that results are, too.
 """
 
@@ -10,14 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughgas.kernel import hooks
+
 SCHEMES = ("cheapest", "sweep", "cells", "lists")  # legal values of the setting `neighbours`
 CHEAPEST, SWEEP, CELLS, LISTS = range(4)  # their indices: values of Scene.scheme
 MIN_CELLS = 8  # along an axis: with fewer, particles would be met twice
 LAYER_COMPRESSION = 4.0  # density where most contacts in a layer occur, over the initial density
-BREAK_EVEN = {  # dimension -> packing fractions, and the N up to which a sweep costs less
-    2: ((0.001, 0.01, 0.05, 0.2, 0.5), (2500, 1600, 1050, 500, 270)),
-    3: ((0.001, 0.01, 0.05, 0.2, 0.5), (2600, 1400, 800, 500, 320)),
+PACKINGS = (0.001, 0.01, 0.05, 0.2, 0.5)
+BREAK_EVEN = {  # dimension -> N up to which a sweep costs less, at each of PACKINGS
+    2: (2500, 1600, 1050, 500, 270),
+    3: (2600, 1400, 800, 500, 320),
 }
+BREAK_EVEN_OF_KICKS = (600, 320, 230, 230, 230)  # with 5 to 30 kicks per contact of a particle
 BED_PACKING = 0.2  # for this choice, of a gas with an open top: dense below, dilute above
 SIZE_EXPONENT = 0.12  # of the ratio of radii in the break-even number
 LISTS_FROM = {2: 0.75, 3: 0.45}  # dimension -> packing from which on lists cost less than cells
@@ -77,20 +82,31 @@ def chosen_scheme(scene, gas, packing):
     if scene.scheme != CHEAPEST:
         return scene.scheme
     dimension, is_bed = len(scene.box), scene.box[-1] is None
-    few = break_even(dimension, BED_PACKING if is_bed else packing)
+    few = break_even(dimension, BED_PACKING if is_bed else packing, has_kicks(scene.effects))
     if gas.number <= few * gas.size_ratio**SIZE_EXPONENT:
         return SWEEP
     may_have_lists = scene.effects.shear is None and gas.size_ratio == 1.0 and not is_bed
     return LISTS if may_have_lists and packing >= LISTS_FROM[dimension] else CELLS
 
 
-def break_even(dimension, packing):
+def has_kicks(effects):
+    """Return whether an effect changes velocities at times of its own, particle by particle."""
+    kept_times, events = (
+        {hook.effect_index for hook in hooks.active(effects, name)}
+        for name in ("particle_times", "predict")
+    )
+    return bool(kept_times & events)
+
+
+def break_even(dimension, packing, kicked=False):
     """Return the number of particles up to which a sweep costs less than cells.
 
-    The number is interpolated between the packing fractions of BREAK_EVEN, on logarithmic scales.
+    `kicked` is as returned by `has_kicks`. Between PACKINGS the number is interpolated, on
+    logarithmic scales.
     """
-    packings, numbers = np.log(BREAK_EVEN[dimension])
-    return round(math.exp(np.interp(math.log(packing), packings, numbers)))
+    numbers = BREAK_EVEN_OF_KICKS if kicked else BREAK_EVEN[dimension]
+    logarithm = np.interp(math.log(packing), np.log(PACKINGS), np.log(numbers))
+    return round(math.exp(logarithm))
 
 
 def particles_per_cell(dimension, packing):

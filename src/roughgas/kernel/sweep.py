@@ -14,9 +14,10 @@ import math
 
 import numpy as np
 
-from roughgas.compiling.jit import jit
+from roughgas.compiling.jit import jit, static
 from roughgas.compiling.lanes import append, lanes_of, load, multiply_add
 from roughgas.kernel import hooks
+from roughgas.kernel.hooks import active
 from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, read, subtract
 from roughgas.kernel.particles import (
     image_numbers,
@@ -30,6 +31,8 @@ from roughgas.kernel.particles import (
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
 
 SINGLE_ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
+SPANS_OF_EXTENT = 3.0  # for which paths stay within State.clock[EXTENT]
+FASTEST = 5.0  # speed of the fastest particle relative to a typical partner's, roughly
 ROUNDED_UP = 1.0 + 2.0**-20  # factor that makes a number in single precision an upper bound
 
 
@@ -81,13 +84,33 @@ def horizon(state, scene, i):
     Any positive duration gives the same events, to rounding.
     """
     v = read(state.trajectory, i, len(scene.box), scene.box)
-    speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
+    speed = math.sqrt(dot(v, v)) + _speed_of_partners(state, scene)
     if speed == 0.0:
         return state.clock[SPAN]
     distance = scene.extent - 4.0 * largest_of(state.bodies)
     if state.bodies is not None:
         distance = max(distance, largest_of(state.bodies))  # walls may be near
     return min(distance / speed, state.clock[LONGEST_HORIZON])
+
+
+@jit
+def _speed_of_partners(state, scene):
+    """Return twice the typical speed; more where kicks or walls have heated the gas up since the
+    clock's typical speed was computed."""
+    clock = state.clock
+    speed = 2.0 * clock[TYPICAL_SPEED]
+    if _may_heat_up(scene.effects):
+        fastest = clock[EXTENT] / (SPANS_OF_EXTENT * clock[SPAN])
+        speed = max(speed, fastest / FASTEST)
+    return speed
+
+
+@static
+def _may_heat_up(effects):
+    """Return whether events of an effect, as kicks, may heat up a gas whose lines have the
+    particles' velocities, without those of a free fall or a sheared flow, which partners share."""
+    shared = active(effects, "acceleration") or active(effects, "image_shift")
+    return bool(active(effects, "predict")) and not shared
 
 
 @jit
@@ -101,7 +124,7 @@ def line_of(state, scene, i):
     start, velocity = position_and_velocity(state, scene, i, 0.0)
     extent = 0.0
     for k in range(len(start)):
-        extent += abs(start[k]) + 3.0 * state.clock[SPAN] * abs(velocity[k])
+        extent += abs(start[k]) + SPANS_OF_EXTENT * state.clock[SPAN] * abs(velocity[k])
     state.clock[EXTENT] = max(state.clock[EXTENT], extent)
     return start, velocity
 
