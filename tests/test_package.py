@@ -1,4 +1,4 @@
-"""Files that describe the project to others agree: version, authors, address, dependencies, pins."""
+"""Files that describe the project agree: version, authors, address, dependencies; and pins."""
 
 import re
 import tomllib
