@@ -174,6 +174,20 @@ def test_the_time_left_follows_the_share_of_the_work(monkeypatch):
     assert re.match(r"task:  10%\|[^|]*\| 2 of 9 points, ", terminal.shown[-1])
 
 
+def test_no_time_left_is_told_while_compiling_took_most_of_it(monkeypatch):
+    clock = iter([0, 19, 80])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress, "FIRST_LINE_AFTER", 10.0)
+    stream = io.StringIO()
+    with ProgressBar("gas", 125, "frames", stream) as bar:
+        for done in (1, 25):
+            bar.reach(done)
+    assert stream.getvalue().splitlines() == [
+        "gas: 1 %, 1 of 125 frames, 19 s so far",
+        "gas: 20 %, 25 of 125 frames, 80 s so far, about 320 s left",
+    ]
+
+
 def test_a_pipe_gets_lines_about_long_work(monkeypatch):
     clock = iter([0, 5, 11, 60, 72])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))

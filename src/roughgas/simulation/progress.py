@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 BAR_FORMAT = "{desc}: {percentage:3.0f}%|{bar}| {unit}, {remaining} left{postfix}"
 BAR_INTERVAL = 0.1  # seconds between updates of a bar
 FIRST_LINE_AFTER, LINE_INTERVAL = 10.0, 60.0  # seconds until the first line, and between lines
+FIRST_ESTIMATE = 0.02  # share of the work before which compiling may have taken most of the time
 NOTEBOOK = "ipykernel"  # module that is imported in notebooks
 Item = TypeVar("Item")
 
@@ -107,7 +108,8 @@ class ProgressBar:
                 f"{self._progress_text()}{note and f' ({note})'}",
                 now - self._begun,
             )
-            left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if share else ""
+            is_estimated = share >= FIRST_ESTIMATE
+            left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if is_estimated else ""
             percentage = f"{100 * share:.0f} %, " if share else ""
             self._print(f"{self._name}: {percentage}{progress_text}, {elapsed:.0f} s so far{left}")
 
