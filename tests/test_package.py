@@ -16,6 +16,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 CITED = read_yaml(ROOT / "CITATION.cff")
 PAPER = (ROOT / "paper.md").read_text(encoding="utf-8")
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+PROGRAMS = {"bannerman2011", "lam2015", "molder2021", "plimpton2019", "thompson2022"}
+PROGRAMS |= {"weinhart2020"}
+"""Works on programs, which the page of earlier work does not have."""
 OF_CONDA = {
     "dask": "dask-core",
     "matplotlib": "matplotlib-base",
@@ -85,11 +88,16 @@ def test_the_authors_are_those_of_the_citation():
 
 
 def test_the_paper_cites_what_its_bibliography_has():
-    """By DOI; works that the article cites, too, are written in the same way."""
+    """By DOI. The page of earlier work has all works on physics, and works that the article cites,
+    too, are written in the same way."""
     entries = (ROOT / "paper.bib").read_text(encoding="utf-8").split("\n\n")
     keys = [re.match(r"@\w+\{(\w+),", entry)[1] for entry in entries]
     assert set(re.findall(r"@([a-z]+\d{4})", PAPER)) == set(keys)
     assert all(re.search(r"doi = \{10\.\d{4,}/\S+\}", entry) for entry in entries)
+    pages = " ".join((ROOT / "docs" / "references.md").read_text(encoding="utf-8").split())
+    for key, entry in zip(keys, entries, strict=True):
+        volume, page = (re.search(rf"{name} = {{+(\w+)", entry) for name in ("volume", "pages"))
+        assert key in PROGRAMS or re.search(rf"\*\*{volume[1]}\*\*,? {page[1]}\b", pages), key
     of_article = (ROOT / "article" / "references.bib").read_text(encoding="utf-8")
     assert [key for key, entry in zip(keys, entries, strict=True) if f"{{{key}," in of_article]
     different = [
