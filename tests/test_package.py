@@ -87,6 +87,22 @@ def test_the_authors_are_those_of_the_citation():
     assert re.findall(r"^  - name: (.*)\n    (?:orcid|affil)", head, re.M) == authors
 
 
+def pinned(path):
+    """Return the pinned packages of a lock file, each a line with its version."""
+    text = path.read_text(encoding="utf-8")
+    assert "index" not in text and text.count("==") <= text.count(" \\\n    --hash=sha256:")
+    return set(re.findall(r"^[\w.-]+==\S+", text, re.M))
+
+
+def test_lock_files_pin_by_hash_and_repeat_no_package():
+    """But for that of clusters, whose environment is apart."""
+    base, extras = pinned(ROOT / "requirements.lock"), PROJECT["project"]["optional-dependencies"]
+    assert len(base) > 80
+    for path in (ROOT / "requirements").glob("*.lock"):
+        assert path.stem in extras and pinned(path)
+        assert path.stem == "slurm" or not pinned(path) & base
+
+
 def test_the_paper_cites_what_its_bibliography_has():
     """By DOI. The page of earlier work has all works on physics, and works that the article cites,
     too, are written in the same way."""
