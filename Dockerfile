@@ -12,9 +12,10 @@ ENV HOME=/home/roughgas USER=roughgas PATH=/opt/roughgas/bin:$PATH
 WORKDIR /roughgas
 
 # what is pinned first: it changes less often than the project
-COPY requirements.lock ./
+COPY requirements.lock requirements/article.lock ./
 RUN python -m venv /opt/roughgas \
-    && /opt/roughgas/bin/python -m pip install --no-cache-dir --require-hashes --requirement requirements.lock
+    && /opt/roughgas/bin/python -m pip install --no-cache-dir --require-hashes \
+        --requirement requirements.lock --requirement article.lock
 
 COPY --chown=roughgas CHANGELOG.md CITATION.cff LICENSE Makefile README.md Snakefile config.yaml pyproject.toml ./
 COPY --chown=roughgas article article

@@ -5,29 +5,23 @@ PYTHON ?= python3.11 python3.12 python3.13 python3.14 python3
 JOBS ?= 2
 SCALE ?= paper
 REPORTED ?= figures
-SNAKEFILES := Snakefile workflow rules
+SNAKEFILES := Snakefile workflow rules src/roughgas/cli/project_files
 BIN := .venv/bin
 READY = "Ready. Next:  source .venv/bin/activate   and then, for example:  roughgas --help"
 SNAKEMAKE = $(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) --
 RESULTS = results/$(SCALE)
 AT_SCALE = $(if $(filter-out paper,$(SCALE)), SCALE=$(SCALE))
 FIGURES = figures$(if $(filter-out paper,$(SCALE)),/$(SCALE))
-PIP := $(BIN)/python -m pip --disable-pip-version-check install
+# without compiled modules, a fifth of all that is installed: Python writes those that are imported
+PIP := -m pip --disable-pip-version-check install --quiet --no-compile
+IMPORTED := matplotlib.pyplot, netCDF4, numba, numpy.random, pandas, pytest, snakemake.cli, xarray
+# what requirements.lock has: with the same versions elsewhere, it is not repeated in requirements/
+LOCKED := $$(sed -nE 's/^([a-z0-9-]+)==.*/--no-emit-package \1/p' requirements.lock)
 LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
     --python-version 3.11 pyproject.toml
 EXTRA_TESTS := slow or remedy or browser or readers or slurm
 TESTS ?=
 FAST := base claims config data results scene statistics theory test_refusals.py
-
-# pip in a few lines, in a terminal or in a pipe: how far it is, and of a failure all that it said
-define install
-{ $(PIP) --progress-bar off --require-hashes --requirement $(1) 2>&1 || echo "pip has failed"; } | \
-    awk -v total="$$(grep -c == $(1))" ' \
-        { said = said $$0 "\n" } \
-        /^Collecting/ && ++n % 25 == 0 { print "  " n " of " total " packages"; fflush() } \
-        /^Installing collected/ { print "  installing all of them"; fflush() } \
-        END { if (/^pip has failed/) { printf "%s", said; exit 1 } }'
-endef
 
 help: ## say what there is to make
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 18
@@ -48,14 +42,14 @@ report: setup ## pages for a browser: the report, every point to click on, a gas
 	@echo "each is one file, to be sent as it is. All products, and how each was made:  $(RESULTS)/workflow.html"
 	@echo "With more in it:  make$(AT_SCALE) REPORTED='figures extensions' report"
 
-test: setup ## run the tests, but for those of `make extras`
+test: .venv/with-article ## run the tests, but for those of `make extras`
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS) or campaign)" $(TESTS)
 	@echo "All tests pass. Those that take minutes more, a browser, or Slurm:  make extras"
 
 test-fast: setup ## run those tests that need neither a kernel nor a workflow, at each save
 	$(BIN)/python -m pytest -q -n $(JOBS) -m "not ($(EXTRA_TESTS) or campaign)" $(addprefix tests/,$(FAST))
 
-extras: .venv/with-browser .venv/with-readers .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
+extras: .venv/with-article .venv/with-browser .venv/with-readers .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)" $(TESTS)
 	@echo "All of these pass, too."
 
@@ -75,11 +69,15 @@ notebook: .venv/with-notebook ## open the tutorial in a browser, as a notebook
 	@echo "Opening docs/tutorial.ipynb; Ctrl-C here ends it."
 	$(BIN)/python -m jupyterlab docs/tutorial.ipynb
 
+article: .venv/with-article ## write the article on this reproduction, a PDF
+	$(SNAKEMAKE) article
+	@echo "Look at  $(RESULTS)/article.pdf"
+
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
 	@echo "Look at  docs/benchmarks.md"
 
-lint: setup ## check style, format, imports, types and words
+lint: .venv/with-lint ## check style, format, imports, types and words
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check $(SNAKEFILES)
@@ -88,7 +86,7 @@ lint: setup ## check style, format, imports, types and words
 	$(BIN)/python -m tests.words
 	@echo "Style, format, imports, types and words are as they should be."
 
-format: setup ## bring the sources into format
+format: .venv/with-lint ## bring the sources into format
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 	$(BIN)/snakefmt $(SNAKEFILES)
@@ -110,30 +108,32 @@ setup: .venv/ready ## install what is needed into .venv
 	fi; \
 	echo "Installing into .venv, once; this takes about a minute."; \
 	$$python -m venv --clear .venv
-	@$(call install,requirements.lock)
-	@$(PIP) -qq --no-deps --no-build-isolation --editable .
+	@$(BIN)/python -m pip uninstall -qq --yes setuptools # unused; newer Pythons do not bring it
+	@$(BIN)/python $(PIP) --require-hashes --requirement $<
+	@$(BIN)/python $(PIP) --no-deps --no-build-isolation --editable .
+	@env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -c "import $(IMPORTED)"
 	@touch $@
 
 # what only some need: requirements/*.lock
 .venv/with-%: requirements/%.lock .venv/ready
 	@echo "Installing what \`$*\` needs into .venv, once."
-	@$(call install,$<)
+	@$(BIN)/python $(PIP) --require-hashes --requirement $<
 	@touch $@
 
 # apart, since with the plugin installed every snakemake looks for a Slurm first
 .venv-slurm/ready: requirements/slurm.lock .venv/ready
 	@echo "Installing Snakemake with its plugins for clusters into .venv-slurm, once."
 	@$(BIN)/python -m venv --clear .venv-slurm
-	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --require-hashes --requirement $<
-	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --no-deps --no-build-isolation --editable .
+	@.venv-slurm/bin/python $(PIP) --require-hashes --requirement $<
+	@.venv-slurm/bin/python $(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
 lock: ## choose and pin the newest versions of all dependencies (needs uv)
-	$(LOCK) --upgrade --extra dev --output-file requirements.lock
-	$(LOCK) --upgrade --extra docs --constraint requirements.lock --output-file requirements/docs.lock
-	$(LOCK) --upgrade --extra browser --constraint requirements.lock --output-file requirements/browser.lock
-	$(LOCK) --upgrade --extra notebook --constraint requirements.lock --output-file requirements/notebook.lock
-	$(LOCK) --upgrade --extra readers --constraint requirements.lock --output-file requirements/readers.lock
+	$(LOCK) --upgrade --extra test --output-file requirements.lock
+	for extra in article browser docs lint notebook readers; do \
+	    $(LOCK) --upgrade --extra $$extra --constraint requirements.lock $(LOCKED) \
+	        --output-file requirements/$$extra.lock || exit 1; \
+	done
 	$(LOCK) --upgrade --extra slurm --output-file requirements/slurm.lock # S3 needs an older python-dateutil
 	@echo "To see what has changed:  git diff requirements.lock requirements"
 
@@ -142,5 +142,5 @@ clean: ## remove all results; the environment and the committed figures stay
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 	@echo "All results are gone. To make them again:  make figures"
 
-.PHONY: help figures report test test-fast extras versions docs notebook bench lint format setup lock clean
+.PHONY: help article figures report test test-fast extras versions docs notebook bench lint format setup lock clean
 .DELETE_ON_ERROR:

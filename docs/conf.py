@@ -14,6 +14,7 @@ from docutils.nodes import SkipNode
 from jupyter_client.manager import KernelManager
 from latex2mathml.converter import convert
 from sphinx.errors import SphinxError
+from tests import notebook
 
 import roughgas
 from roughgas import steps
@@ -75,7 +76,7 @@ html_math_renderer = "mathml"
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300  # s a cell: a kernel may have to be compiled
-nb_output_stderr = "remove"  # progress bars
+nb_output_stderr = "remove"
 KernelManager.transport_encryption.default_value = "auto"  # others use this machine, too
 logging.getLogger("traitlets").setLevel(logging.WARNING)
 
@@ -99,6 +100,7 @@ def setup(app):
     app.connect("autodoc-process-docstring", as_prose)
     app.connect("autodoc-skip-member", skip_fields)
     app.connect("build-finished", refuse_what_is_loaded)
+    app.connect("build-finished", refuse_old_outputs)
 
 
 def write_studies(app):
@@ -227,3 +229,12 @@ def refuse_what_is_loaded(app, exception):
     for path in Path(app.outdir).rglob("*.*"):
         if path.suffix in (".html", ".css") and (reference := LOADED.search(path.read_text())):
             raise SphinxError(f"{path}: loads from elsewhere: {reference[0]}")
+
+
+def refuse_old_outputs(app, exception):
+    """End the build where the tutorial, as it ran, printed other texts than its file has."""
+    executed = Path(app.outdir).parent / "jupyter_execute" / "tutorial.ipynb"
+    if exception is None and notebook.texts(notebook.read(executed)) != notebook.texts(
+        notebook.read()
+    ):
+        raise SphinxError("docs/tutorial.ipynb: its outputs are old: python -m tests.notebook")

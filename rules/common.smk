@@ -40,10 +40,10 @@ SOURCE = Path(PACKAGE) if IS_REMOTE else Path(os.path.relpath(Path(BASE).parent)
 # a module, or an included Snakefile, leaves the configuration of this folder to its host
 IS_MODULE = internals.is_module(workflow)
 DEFAULT = internals.default_of(workflow)  # default rule of a module's host, if already defined
-# the configuration in this folder, or else beside the Snakefile
+# the configuration in this folder, or else beside the Snakefile, or of the package
 CONFIG = next(
     str(folder / "config.yaml")
-    for folder in [*([] if IS_MODULE else [Path()]), SOURCE]
+    for folder in [*([] if IS_MODULE else [Path()]), SOURCE, Path(PACKAGE)]
     if (folder / "config.yaml").exists()
 )
 # rules call the `roughgas` in the environment of this snakemake

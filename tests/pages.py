@@ -35,7 +35,7 @@ PAPER = read_study(STUDIES / "paper", "The paper", ())
 JUDGES = study_module(STUDIES / "paper", "judges")
 DOCS = ROOT / "docs"
 READMES = sorted(STUDIES.glob("*/README.md"))
-QUOTING = (DOCS / "results.md", DOCS / "evidence.md", *READMES)
+QUOTING = (DOCS / "results.md", DOCS / "evidence.md", ROOT / "paper.md", *READMES)
 """Pages whose numbers have marks."""
 EDITORS = Path(json_schema.__file__).with_name("config.schema.json")
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"

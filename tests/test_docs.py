@@ -151,7 +151,6 @@ def test_all_of_it_typed_in_a_fresh_clone(typed):
     """The README's answers are printed, and git sees no new file."""
     lines, clone = typed
     assert not [line for line in answers() if line.rstrip() not in lines]
-    assert any(re.fullmatch(r"  50 of \d+ packages", line) for line in lines)
     assert all((clone / path).stat().st_size > 1000 for path in PRODUCTS)
     status = subprocess.run(
         ["git", "status", "--porcelain"], cwd=clone, capture_output=True, text=True, check=True

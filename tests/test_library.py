@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tqdm.auto
+import tqdm
 from schedules import STEADY
 from slow_cases import slow_but
 
@@ -20,6 +20,7 @@ from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.trajectory import write_trajectory
+from roughgas.simulation import progress
 
 ROOT = Path(__file__).parent.parent
 POINT = {"r": 0.9, "beta": 0.5}
@@ -114,7 +115,7 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
     assert 10 * np.pi / np.prod(sides) == pytest.approx(0.1)
 
 
-class Bar(tqdm.auto.tqdm):
+class Bar(tqdm.tqdm):
     """A progress bar that remembers, and is interrupted at some share of its way."""
 
     instances: typing.ClassVar[list] = []
@@ -138,9 +139,9 @@ class Bar(tqdm.auto.tqdm):
 
 @pytest.fixture
 def bars(monkeypatch):
-    """The progress bars that are shown, as in a notebook."""
-    monkeypatch.setattr(tqdm.auto, "tqdm", Bar)
-    monkeypatch.setattr("roughgas.simulation.progress.NOTEBOOK", "pytest")
+    """The progress bars that are shown, as on a terminal."""
+    monkeypatch.setattr(progress, "_suitable_tqdm", lambda: Bar)
+    monkeypatch.setattr(progress, "NOTEBOOK", "pytest")  # or stderr is none
     monkeypatch.setattr(Bar, "instances", [])
     return Bar.instances
 

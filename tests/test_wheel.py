@@ -26,6 +26,7 @@ LINES = {
     "reduce": "reduce point.nc -o cooling.nc",
     "plot": "plot cooling.nc -o R.png",
     "experiments": "experiments",
+    "init": "init gases",
     "theory": "theory --r 0.9 --beta 0.5",
     "doctor": "doctor",
     "completion": "completion bash",
@@ -83,13 +84,27 @@ def data_files(folder):
     return {str(path.relative_to(folder)) for path in paths if path.suffix in DATA}
 
 
+def names_below(folder):
+    """Return the paths, relative to `folder`, of all files below it."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
 def test_the_wheel_has_all_that_the_package_reads(package):
     assert STUDIES and data_files(ROOT / "src/roughgas") <= data_files(package / "roughgas")
     assert data_files(ROOT / "studies") == data_files(package / "roughgas/studies")
     shipped = package / "roughgas/config.yaml"
     assert not shipped.is_symlink() and shipped.read_text() == (ROOT / "config.yaml").read_text()
+    of_workflow = {"Snakefile", *("rules/" + name for name in names_below(ROOT / "rules"))}
+    assert names_below(package / "roughgas/pipeline") == of_workflow
     siblings = [path.name for path in package.iterdir() if path.name != "roughgas"]
     assert len(siblings) == 1 and siblings[0].endswith(".dist-info")
+
+
+def test_the_wheel_has_the_licences_of_all_that_it_holds(package):
+    licences = [path for path in (ROOT / "src").rglob("LICENSE")]
+    (described,) = package.glob("*.dist-info")
+    packed = names_below(described / "licenses")
+    assert licences and packed == {"LICENSE", *(str(p.relative_to(ROOT)) for p in licences)}
 
 
 def test_package_indices_know_the_form_of_the_metadata(package):
@@ -161,7 +176,7 @@ def test_every_command_works_in_an_empty_folder(installed, tmp_path):
     done = roughgas(installed, "crate point.nc -o run.zip", tmp_path)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert "must be one with the workflow" in done.stderr
-    (tmp_path / "config.yaml").write_text("scale: paper\n")
+    (tmp_path / "config.yaml").write_text("scales: paper\n")
     done = roughgas(installed, f"run {POINT}", tmp_path)
     assert done.returncode == 2 and done.stderr.startswith("roughgas: error: config.yaml")
 
@@ -173,3 +188,16 @@ def test_with_a_clone_of_the_workflow_it_runs(installed, tmp_path):
     done = ran(installed, command, tmp_path)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "results/small/living.html").exists()
+
+
+@pytest.mark.slow
+def test_a_new_project_runs_with_the_workflow_of_the_wheel(installed, tmp_path):
+    """In a folder outside of any clone, from the study to its page."""
+    assert roughgas(installed, "init 'my gases'", tmp_path).returncode == 0
+    project = tmp_path / "my gases"
+    done = ran(installed, [installed.parent / "python", "-m", "snakemake", "-j1", "mine"], project)
+    assert done.returncode == 0, done.stderr
+    assert (project / "figures/small/mine.sliding.png").exists()
+    assert (project / "results/small/mine/page.html").exists()
+    done = roughgas(installed, "run mine.sliding --r 0.9 --beta 0.5", project)
+    assert done.returncode == 0 and "friction (mu 0.2)" in done.stdout

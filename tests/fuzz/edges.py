@@ -49,7 +49,7 @@ VALID_ARGUMENTS = {
     "reduce": [f"{POINTS}/seed1.nc", f"{POINTS}/seed2.nc", "--output", "out.nc"],
 }
 """Valid arguments of each command, the positional ones first."""
-SKIPPED_COMMANDS = {"doctor", "crate"}
+SKIPPED_COMMANDS = {"crate", "doctor", "init"}
 """Commands without options of their own, or that take minutes or an entire project."""
 OUTPUT_OPTIONS = {"output"}
 SLOW_COMMANDS = {"movie", "trajectory"}

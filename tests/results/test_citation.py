@@ -23,18 +23,19 @@ def test_the_committed_codemeta_is_up_to_date(tmp_path):
     assert written == (ROOT / "codemeta.json").read_text("utf-8"), command
     metadata = json.loads(written)
     assert (metadata["version"], metadata["description"]) == (CITED["version"], CITED["title"])
+    assert metadata["codeRepository"] == CITED["repository-code"]
     assert metadata["referencePublication"][0]["@id"].endswith(CITED["references"][0]["doi"])
 
 
 def test_codemeta_has_the_fields_of_a_release_if_the_citation_has_them(tmp_path):
     author = {"given-names": "A", "family-names": "B", "orcid": "https://orcid.org/0"}
-    release = {"doi": "10.1/x", "date-released": "2026-12-01", "repository-code": "https://c"}
+    release = {"doi": "10.1/x", "date-released": "2026-12-01"}
     metadata = codemeta(CITED | release | {"authors": [author]})
     assert metadata["author"] == [
         {"@type": "Person", "givenName": "A", "familyName": "B", "@id": "https://orcid.org/0"}
     ]
-    assert (metadata["identifier"], metadata["codeRepository"]) == ("10.1/x", "https://c")
-    assert not {"identifier", "codeRepository", "datePublished"} & codemeta(CITED).keys()
+    assert (metadata["identifier"], metadata["datePublished"]) == ("10.1/x", "2026-12-01")
+    assert not {"identifier", "datePublished"} & codemeta(CITED).keys()
     (tmp_path / "bad.cff").write_text("a: [")
     assert main(["codemeta", str(tmp_path / "bad.cff"), "-o", str(tmp_path / "c.json")]) == 2
     write_codemeta(ROOT / "CITATION.cff", output=tmp_path / "c.json")

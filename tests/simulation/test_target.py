@@ -2,6 +2,7 @@
 
 import io
 import re
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -103,21 +104,50 @@ def batch_after(collisions):
 
 
 def test_a_cooling_gas_is_followed_through_its_replicas():
-    """In collisions per particle: 20 to thermalise, the transient, 30 on the plateau."""
+    """In collisions per particle: 20 to thermalise, the transient, 30 on the plateau, averaged over
+    all replicas."""
     stream = Terminal()
     with RunProgress(
         "cooling", build(COOLING_GAS, 1.0, 1.0), typed(COOLING_GAS), stream=stream
     ) as run_progress:
         total = int(stream.shown[0].split(" of ")[1].split()[0])
-        replica = total / 4
         for number in range(4):
             gas = replica_of(number)
             run_progress.begin(gas, None, {})
             for share in (0.5, 1.0):
-                run_progress.take(gas, None, batch_after(round(share * replica * 20)))
+                run_progress.take(gas, None, batch_after(round(share * total * 20)))
+        assert 20 + 30 < total < 120
+        run_progress.expect(8 * run_progress._length_of_gas)  # as with twice the replicas
     shown = [int(bar.split("| ")[1].split()[0]) for bar in stream.shown[2:]]
-    assert shown == pytest.approx([total * eighth / 8 for eighth in range(1, 9)], abs=1)
-    assert stream.shown[-1].startswith("cooling: 100%|")
+    expected = [*(total * eighth / 8 for eighth in range(1, 9)), total / 2]
+    assert shown == pytest.approx(expected, abs=1)
+    assert stream.shown[-2].startswith("cooling: 100%|")
+
+
+class Output:
+    """A stand-in for an output of a notebook's cell; `texts` are its successive contents."""
+
+    def __init__(self):
+        self.texts = []
+
+    def update(self, content, raw):
+        self.texts.append(content["text/plain"])
+
+
+def test_in_a_notebook_a_line_of_the_output_changes_and_ends_empty(monkeypatch, capsys):
+    output = Output()
+    display = SimpleNamespace(display=lambda *_, **__: output)
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(display=display))
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    monkeypatch.delitem(sys.modules, "roughgas.simulation.notebook_bar", raising=False)
+    monkeypatch.setattr(progress, "NOTEBOOK", "pytest")
+    with ProgressBar("task", 9, "points") as bar:
+        for done in (2, 9):
+            bar.reach(done)
+    shown, last = output.texts[:-1], output.texts[-1]
+    assert last == "" and any(re.match(r"task:  22%\|.*\| 2 of 9 points, ", text) for text in shown)
+    assert all(text.startswith("task: ") and "\n" not in text for text in shown)
+    assert capsys.readouterr() == ("", "")
 
 
 def test_short_work_shows_no_progress_without_a_terminal():
@@ -142,6 +172,20 @@ def test_the_time_left_follows_the_share_of_the_work(monkeypatch):
     with ProgressBar("task", 9, "points", terminal) as bar:
         bar.reach(2, share=0.1)
     assert re.match(r"task:  10%\|[^|]*\| 2 of 9 points, ", terminal.shown[-1])
+
+
+def test_no_time_left_is_told_while_compiling_took_most_of_it(monkeypatch):
+    clock = iter([0, 19, 80])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress, "FIRST_LINE_AFTER", 10.0)
+    stream = io.StringIO()
+    with ProgressBar("gas", 125, "frames", stream) as bar:
+        for done in (1, 25):
+            bar.reach(done)
+    assert stream.getvalue().splitlines() == [
+        "gas: 1 %, 1 of 125 frames, 19 s so far",
+        "gas: 20 %, 25 of 125 frames, 80 s so far, about 320 s left",
+    ]
 
 
 def test_a_pipe_gets_lines_about_long_work(monkeypatch):

@@ -1,6 +1,7 @@
 """The commands of `roughgas`: the parameters of each function are the arguments of its command, and
 its docstring is the help. Slow imports are inside the functions."""
 
+import shlex
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -391,6 +392,20 @@ def theory(
     from roughgas.cli.theory import gases, print_tables
 
     print_tables(gases(r, beta, dimension, inertia, spin_share, mu, species, packing), json, csv)
+
+
+@command("roughgas init gases")
+def init(folder: Annotated[str, Option("a folder that is new or empty", "FOLDER")]) -> None:
+    """Write a project to start from.
+
+    Write a Snakefile that uses the workflow of this installation, a config.yaml with changes to its
+    configuration, and a study, studies/mine, to a new folder: `snakemake -j2 mine` in it simulates
+    the study.
+    """
+    from roughgas.cli.project import write_project
+
+    write_project(folder)
+    print(f"{folder}: a project. Next:  cd {shlex.quote(folder)} && snakemake -j2 mine")
 
 
 @command(

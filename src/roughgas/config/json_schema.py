@@ -27,7 +27,7 @@ from roughgas.base.fields import (
 )
 from roughgas.base.labels import LEGAL_LEVEL, level, restitution, roughness
 from roughgas.base.reading import read_yaml
-from roughgas.config.packaged import STUDIES_OF_ACCURACY, shipped_studies
+from roughgas.config.packaged import STUDIES_FOLDER, STUDIES_OF_ACCURACY, shipped_path
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
@@ -132,7 +132,7 @@ def _definitions_of_accuracy() -> dict[str, Schema]:
     definitions: dict[str, Schema] = {}
     modules: Schema = {}
     for name in STUDIES_OF_ACCURACY:
-        path = shipped_studies() / name / "schema.yaml"
+        path = shipped_path(STUDIES_FOLDER) / name / "schema.yaml"
         if path.exists():  # absent in a package without studies
             of_study = read_yaml(path)
             definitions |= of_study["$defs"]

@@ -26,7 +26,9 @@ def active_config_path() -> Path:
 class ConfigurationFiles:
     """The written configuration at a path, and the files that it was merged from.
 
-    A file that does not stand alone is merged over the active configuration.
+    A file that does not stand alone is merged over the active configuration; if this is
+    config.yaml in the present folder and does not stand alone either, it is merged over the
+    packaged one.
     """
 
     def __init__(self, path: str | Path, overrides: WrittenConfiguration | None = None) -> None:
@@ -36,10 +38,11 @@ class ConfigurationFiles:
         """
         self.source, self.files = Path(path).name, [Path(path)]
         written = WrittenConfiguration.from_file(path)
-        base = active_config_path()
-        if not (written.stands_alone or Path(path).resolve() == base.resolve()):
-            written = written.over(WrittenConfiguration.from_file(base))
-            self.files.insert(0, base)
+        for base in (active_config_path(), SHIPPED):
+            is_read = any(base.resolve() == file.resolve() for file in self.files)
+            if not (written.stands_alone or is_read):
+                written = written.over(WrittenConfiguration.from_file(base))
+                self.files.insert(0, base)
         self.written = written.with_defaults()
         if overrides:
             overrides.check_values()

@@ -1,4 +1,4 @@
-"""The configurations and studies that come with the package."""
+"""The configuration, the studies and the workflow that come with the package."""
 
 from pathlib import Path
 
@@ -13,11 +13,8 @@ SHIPPED_STUDIES = ("paper", *STUDIES_OF_ACCURACY)
 """Studies of every configuration; the workflow's products are named after them."""
 
 
-def shipped_studies() -> Path:
-    """Return the folder of the studies that come with the package; in a clone, its studies/."""
-    package_folder = PACKAGE / STUDIES_FOLDER
+def shipped_path(name: str) -> Path:
+    """Return the path of `name`, such as "studies", in the package, or else in its clone."""
     # two folders up: for a copy of a clone whose link to config.yaml has become a file
-    clone_folders = SHIPPED.resolve().parent / STUDIES_FOLDER, PACKAGE.parents[1] / STUDIES_FOLDER
-    return next(
-        (folder for folder in (package_folder, *clone_folders) if folder.is_dir()), package_folder
-    )
+    folders = PACKAGE, SHIPPED.resolve().parent, PACKAGE.parents[1]
+    return next((folder / name for folder in folders if (folder / name).exists()), PACKAGE / name)

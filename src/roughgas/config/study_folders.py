@@ -22,7 +22,7 @@ from roughgas.base.files import LEGAL_FILE, write_text
 from roughgas.base.reading import read_yaml
 from roughgas.config import study_code
 from roughgas.config.configuration import ACCURACY, Configuration
-from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, shipped_studies
+from roughgas.config.packaged import SHIPPED_STUDIES, STUDIES_FOLDER, shipped_path
 from roughgas.config.study import TaskSettings
 from roughgas.config.written_study import (
     TASKS,
@@ -49,7 +49,7 @@ def folders(*files: str | Path) -> dict[str, Path]:
         *(Path(file).resolve().parent / STUDIES_FOLDER for file in files),
         Path(STUDIES_FOLDER),
     )
-    candidates = [shipped_studies() / name for name in SHIPPED_STUDIES]
+    candidates = [shipped_path(STUDIES_FOLDER) / name for name in SHIPPED_STUDIES]
     candidates += [
         folder for search_folder in search_folders for folder in sorted(search_folder.glob("*"))
     ]

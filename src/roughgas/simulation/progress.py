@@ -7,7 +7,6 @@ minute for work longer than FIRST_LINE_AFTER, without importing tqdm, which take
 import math
 import sys
 import time
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self, TypeVar
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 BAR_FORMAT = "{desc}: {percentage:3.0f}%|{bar}| {unit}, {remaining} left{postfix}"
 BAR_INTERVAL = 0.1  # seconds between updates of a bar
 FIRST_LINE_AFTER, LINE_INTERVAL = 10.0, 60.0  # seconds until the first line, and between lines
+FIRST_ESTIMATE = 0.02  # share of the work before which compiling may have taken most of the time
 NOTEBOOK = "ipykernel"  # module that is imported in notebooks
 Item = TypeVar("Item")
 
@@ -108,7 +108,8 @@ class ProgressBar:
                 f"{self._progress_text()}{note and f' ({note})'}",
                 now - self._begun,
             )
-            left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if share else ""
+            is_estimated = share >= FIRST_ESTIMATE
+            left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if is_estimated else ""
             percentage = f"{100 * share:.0f} %, " if share else ""
             self._print(f"{self._name}: {percentage}{progress_text}, {elapsed:.0f} s so far{left}")
 
@@ -123,7 +124,7 @@ class ProgressBar:
 
 
 class RunProgress(ProgressBar, Tracker):
-    """Shows the progress of the simulation of a point, summed over replicas.
+    """Shows the progress of the simulation of a point, averaged over its replicas.
 
     `name` is the title of the display; `stream` and `quiet` as in ProgressBar. The unit is T, or
     collisions per particle if the gas cools.
@@ -143,13 +144,25 @@ class RunProgress(ProgressBar, Tracker):
         self._start = 0.0, 0  # time and collisions of the present gas as it starts
         self._gas = -1  # number of the present gas
         self._particles, self._kind = experiment.particles, protocols.protocol_of(experiment)
-        total = round(self._kind.length(scene, experiment))
-        super().__init__(f"{name} (placing particles)", total, self._kind.UNIT, stream, quiet)
+        self._length = self._kind.length(scene, experiment)  # summed over replicas, as `_before`
+        self._has_replicas = hasattr(experiment.schedule, "replicas")
+        replicas = experiment.schedule.replicas if self._has_replicas else 1
+        self._length_of_gas = self._length / replicas
+        title, unit = f"{name} (placing particles)", self._kind.UNIT
+        super().__init__(title, round(self._length_of_gas), unit, stream, quiet)
         self._name = name
 
     def expect(self, length: float) -> None:
-        """Replace the total length of the schedule, in T or collisions per particle."""
-        self.reach(self._done, total=round(length))
+        """Replace the length of the schedule, summed over replicas, of which there may be more."""
+        if not self._has_replicas:
+            self._length_of_gas = length
+        self._length = length
+        self._show()
+
+    def _show(self) -> None:
+        """Show the finished length, averaged over replicas."""
+        done = self._length_of_gas * (self._before + self._now) / self._length
+        self.reach(round(done), total=round(self._length_of_gas))
 
     def begin(self, gas: "Gas", leg: "Leg", changes: "Changes") -> None:
         """Show that the kernel is compiled; count the time of a new gas from its start."""
@@ -175,7 +188,7 @@ class RunProgress(ProgressBar, Tracker):
         else:
             collisions_made = int(batch.rows["collisions"][-1]) - collisions
             self._now = 2.0 * collisions_made / self._particles
-        self.reach(round(self._before + self._now))
+        self._show()
 
     def arrays(self) -> dict[str, np.ndarray]:
         """Return the progress of the run as arrays by name, for a checkpoint."""
@@ -207,14 +220,11 @@ def with_progress_bar(
 
 
 def _suitable_tqdm() -> Any:
-    """Return tqdm's class for a notebook, or for a terminal, which is imported faster.
+    """Return the class of bars for a notebook, or for a terminal."""
+    if NOTEBOOK in sys.modules:
+        from roughgas.simulation.notebook_bar import NotebookBar
 
-    Without widgets a notebook shows a bar of characters; the warning of tqdm is suppressed.
-    """
-    if NOTEBOOK not in sys.modules:
-        from tqdm import tqdm
+        return NotebookBar
+    from tqdm import tqdm
 
-        return tqdm
-    with warnings.catch_warnings(category=Warning, action="ignore"):
-        from tqdm.auto import tqdm
     return tqdm

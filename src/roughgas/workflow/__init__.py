@@ -10,3 +10,11 @@ experiment, a block the points of one job; a scale is a named set of changes to 
 such as "paper"; a kernel is the compiled code of a simulation; a fingerprint is a text that changes
 with code. All files are paths relative to the workflow's folder.
 """
+
+from roughgas.base.files import PACKAGE
+from roughgas.config.packaged import shipped_path
+
+INSTALLED = PACKAGE / "pipeline" / "Snakefile"
+"""Path of the workflow's Snakefile in an installed package."""
+SNAKEFILE = str(INSTALLED if INSTALLED.exists() else shipped_path("Snakefile"))
+"""Path of the workflow's Snakefile, installed or of a clone, for a `module` of another one."""
