@@ -8,7 +8,8 @@ its judge; claims.yaml of a study has its statements. All methods raise InputErr
 and illegal settings.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +53,12 @@ class StudyProducts:
     @property
     def drawn(self) -> list[str]:
         """The names of the figures that its figure.py draws, or by default of its experiments."""
-        return list(self.figures or self.experiments)
+        return list(self.shown)
+
+    @property
+    def shown(self) -> Mapping[str, Sequence[str]]:
+        """The experiments in each figure, by figure; a figure of an experiment shows only that."""
+        return self.figures or {name: [name] for name in self.experiments}
 
     def tables(self, scale: str) -> dict[str, str]:
         """Return the paths of its tables, by the option of its page.
@@ -325,7 +331,21 @@ class Studies:
 
         Its tables are in `study_folder`.
         """
-        return self.by_table_folder[study_folder].claims(scale, ".md")
+        return self.by_table_folder[study_folder].claims(scale, ".json")
+
+    def page_shows(self, study_folder: str) -> str:
+        """Return the experiments in each figure of a study, JSON by figure, as claims name them.
+
+        Tasks have the name of the study. Its tables are in `study_folder`.
+        """
+        products = self.by_table_folder[study_folder]
+        tasks = {TASKS, *products.study.modules}
+        return json.dumps(
+            {
+                figure: [products.name if name in tasks else name for name in shown]
+                for figure, shown in products.shown.items()
+            }
+        )
 
     def page_figures(self, scale: str, study_folder: str) -> list[str]:
         """Return the paths of the pictures on the page of a study.
