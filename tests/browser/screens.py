@@ -25,7 +25,8 @@ CONTRASTS = """
     while (walker.nextNode()) {
       const element = walker.currentNode.parentElement, text = walker.currentNode.data.trim();
       if (!text || !element.checkVisibility({ visibilityProperty: true })) continue;
-      if (element.closest("script, style, noscript, option, :disabled, [aria-hidden=true]")) continue;
+      if (element.closest("script, style, noscript, option")) continue;
+      if (element.closest(":disabled, [aria-hidden=true]")) continue;
       const levels = [getComputedStyle(element).color, behind(element)].map(luminance);
       ratios.push([(Math.max(...levels) + 0.05) / (Math.min(...levels) + 0.05), text]);
     }

@@ -55,16 +55,19 @@ def _picture(figure: "Figure") -> str:
     file = BytesIO()
     for axes in figure.findobj(Axes):
         axes.set_facecolor("none")
-    options = {"dpi": DPI, "facecolor": "none", "pil_kwargs": {"quality": QUALITY}}
-    figure.savefig(file, format="webp", **options)
+    quality = {"quality": QUALITY}
+    figure.savefig(file, format="webp", dpi=DPI, facecolor="none", pil_kwargs=quality)
     return base64.b64encode(file.getvalue()).decode("ascii")
 
 
 def _lighten_ink(figure: "Figure") -> None:
     """Give letters, frames, ticks and lines that are black in a figure the colour LIGHT_INK."""
-    for artist in figure.findobj(lambda artist: isinstance(artist, Line2D | Text)):
-        if any(same_color(artist.get_color(), ink) for ink in ("black", THEORY)):
-            artist.set_color(LIGHT_INK)
+    for artist in figure.findobj():
+        is_ink = isinstance(artist, Line2D | Text) and any(
+            same_color(artist.get_color(), ink) for ink in ("black", THEORY)
+        )
+        if is_ink:
+            artist.set(color=LIGHT_INK)
     for axes in figure.findobj(Axes):
         axes.tick_params(which="both", color=LIGHT_INK)
         for spine in axes.spines.values():

@@ -1,4 +1,4 @@
-"""Verdicts on statements as pages show them: a table that can be filtered, with links to figures."""
+"""Verdicts on statements as pages show them: a table with a filter, and links to figures."""
 
 import re
 from collections import Counter
@@ -25,7 +25,7 @@ NEGATIVE = re.compile(r"(?<![\w.])-(?=[\d.])")
 
 
 class FigureLink(NamedTuple):
-    """A figure that a statement links to: its name, which is its anchor, and the text of the link."""
+    """A link to a figure: its name, which is its anchor, and the text of the link."""
 
     name: str
     label: str
