@@ -56,7 +56,8 @@ def _claim_record(claim: Record, shows: Mapping[str, Sequence[str]]) -> NamedVal
     deciding = [f"{number['label']}: {_in_short(number)}" for number in claim["numbers"][:1]]
     detectable = claim["detectable"]
     return {
-        **{name: claim[name] for name in ("id", "verdict", "reason", "criterion", "mark")},
+        **{name: claim[name] for name in ("id", "verdict", "mark")},
+        **{name: in_symbols(claim[name]) for name in ("reason", "criterion")},
         "kind": KINDS[claim["verdict"]],
         "statement": in_symbols(claim["text"]),
         "fixed": f"Fixed {claim['fixed']}.",

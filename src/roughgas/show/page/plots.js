@@ -182,7 +182,7 @@ function drawRatios() {
   const bounds = valueOf => rows.flatMap(row => [-1, 1].map(sign => column(row.places.map(({ x, choice: { point } }) =>
     [x, valueOf(point) === null ? null : valueOf(point) + sign * shownError(point)]))));
   const hidden = data => data.map(() => ({ paths: () => null, points: { show: false } }));
-  const same = `${chosen.experiment.name} ${over} ${over === "beta" ? chosen.variant.name : chosen.series.r}`;
+  const same = `${chosen.experiment.name} ${over} ${over === "beta" ? chosen.variant.name : chosen.series.r} ${overCollisions()}`;
   const curve = (stroke, dash) => ({ stroke, dash, width: 1.3, spanGaps: true, pxAlign: 0, points: { show: false } });
   const draws = (id, valueOf, lines, more) => {
     const ranges = bounds(valueOf);
@@ -197,7 +197,7 @@ function drawRatios() {
   draws("ratios", shownR, curves, { height: 340, x: { scale, axis: { ...axis, values: () => [] , size: 12 } }, y: { axis: { label: "R" } } });
   draws("residuals", difference, [zero], { height: 190, x: { scale, axis: { ...axis, label } }, y: { axis: { label: "R − theory" } } });
   at("legend").replaceChildren(...rows.map((row, index) => entry(SIGNS[lookOf(index).symbol], lookOf(index).colour, row.label)),
-    entry("", tone("ink"), theoryName(theory) + (isUnlike() ? ", of averages over collisions" : "")));
+    entry(one ? "" : "lines:", tone("ink"), theoryName(theory) + (isUnlike() ? ", of averages over collisions" : "")));
 }
 
 // ---------------------------------------------------------------- R over time
