@@ -228,6 +228,26 @@ rule front:
         " --shows {params.shows:q} --readme {input.readme:q} --reservation={params.reservation:q} --output {output:q} > {log:q} 2>&1"
 
 
+rule page_of_verdicts:
+    # of the paper and of all studies beyond it
+    input:
+        of_pages("page/base.html", "page/all_verdicts.html", "page/verdicts.html"),
+        of_pages("page/theme.css", "page/document.css", "page/verdicts.css", "page/verdicts.js"),
+        claims=from_wildcards(run_products.all_claims),
+    output:
+        "results/{scale}/verdicts.html",
+    log:
+        "logs/{scale}/verdicts.log",
+    params:
+        code=code_of("show.report"),
+        studies=lambda wildcards: run_products.judged_studies(),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps verdicts {input.claims:q} --studies {params.studies:q}"
+        " --output {output:q} > {log:q} 2>&1"
+
+
 rule effective_config:
     input:
         of_project(*sorted(Path(PACKAGE, "config").glob("*.yaml"))),

@@ -94,6 +94,7 @@ STEPS: dict[str, str | Function] = {
     "study_slides": "show.slides:write_slides",
     "task": "tasks.running:run_task",
     "table": "results.tables:write_table",
+    "verdicts": "show.report:write_verdicts",
 }
 
 

@@ -1,6 +1,6 @@
-"""Pages of results: the report of the paper's figures, and the page of a study.
+"""Pages of results: the report of the paper's figures, the page of a study, and all verdicts.
 
-Both have pictures with their captions, and a table of verdicts that links to the pictures.
+A table of verdicts links to the pictures, which have their captions beside them.
 """
 
 import re
@@ -20,7 +20,7 @@ from roughgas.show.pages import (
     texts_of_figures,
     write_page,
 )
-from roughgas.show.verdicts import label_of, read_verdicts
+from roughgas.show.verdicts import label_of, read_verdicts, read_verdicts_of_studies
 
 RELATIVE_LINK = re.compile(r"(?<!!)\[([^][]*)\]\((?!https?:)[^()]*\)")
 FINDINGS_BEGIN = re.compile(r"^(?=##|!\[)", re.MULTILINE)
@@ -81,7 +81,9 @@ def _figure_record(path: Path, texts: dict[str, str], claims: Sequence[NamedValu
         "alt": f"{title}. {' '.join(text.partition('**')[0].split())}",
         "caption": markup(markdown_as_html(text.encode())),
         "claims": [
-            claim for claim in claims if [name] == [link.name for link in claim["figures"][:1]]
+            claim
+            for claim in claims
+            if [link.address for link in claim["figures"][:1]] == [f"#{name}"]
         ],
     }
 
@@ -127,6 +129,17 @@ def write_study(
     css = [THEME, VERDICTS, "page/document.css"]
     scripts = [text_of("page/verdicts.js")] if claims else []
     write_page(output, "page/study.html", css, scripts, **content)
+
+
+def write_verdicts(inputs: Iterable[str | Path], *, studies: str, output: str | Path) -> None:
+    """Write a page with the verdicts of several studies, in the files claims.json at `inputs`.
+
+    `studies` has their titles, pages and figures, JSON in the form of `read_verdicts_of_studies`.
+    """
+    verdicts = read_verdicts_of_studies(inputs, from_json(studies, "--studies"))
+    css = [THEME, VERDICTS, "page/document.css"]
+    scripts = [text_of("page/verdicts.js")]
+    write_page(output, "page/all_verdicts.html", css, scripts, verdicts=verdicts)
 
 
 def _title_of(path: str) -> str:

@@ -19,15 +19,15 @@ KINDS = {
     "not tested": "untested",
 }
 """Class of a verdict in the style sheet, by verdict, in the order of the buttons."""
-SUBSCRIPT = re.compile(r"\b(E|beta)_([a-z]+)\b")
+SUBSCRIPT = re.compile(r"\b(E|beta)_([a-z0-9]+)\b")
 ROUGHNESS = re.compile(r"\bbeta(?![a-z])")
 NEGATIVE = re.compile(r"(?<![\w.])-(?=[\d.])")
 
 
 class FigureLink(NamedTuple):
-    """A link to a figure: its name, which is its anchor, and the text of the link."""
+    """A link to a figure: its address, such as #fig1a, and its text."""
 
-    name: str
+    address: str
     label: str
 
 
@@ -37,8 +37,41 @@ def read_verdicts(path: str | Path, shows: Mapping[str, Sequence[str]]) -> Named
     `shows` has the experiments in each figure of the page, by figure. Raises InputError if the
     file is not JSON.
     """
-    content = from_json(Path(path).read_text("utf-8"), str(path))
-    claims = [_claim_record(claim, shows) for claim in content["claims"]]
+    content = _content_of(path)
+    claims = [
+        _claim_record(claim, [FigureLink(f"#{name}", label_of(name)) for name in figures])
+        for claim in content["claims"]
+        for figures in [figures_on(claim["experiments"], shows)]
+    ]
+    return _table(content, claims)
+
+
+def read_verdicts_of_studies(
+    paths: Iterable[str | Path], studies: Mapping[str, Record]
+) -> NamedValues:
+    """Return the verdicts in claims.json of several studies, at `paths`, as a single table.
+
+    `studies` has for each study, in this order, its `title`, the address of its `page`, and `shows`
+    as in `read_verdicts`. A statement links to that page. Raises InputError if a file is not JSON.
+    """
+    claims, content = [], {}
+    for path, (name, study) in zip(paths, studies.items(), strict=True):
+        content = _content_of(path)
+        for claim in content["claims"]:
+            anchors = [f"#{figure}" for figure in figures_on(claim["experiments"], study["shows"])]
+            link = FigureLink("".join([study["page"], *anchors[:1]]), study["title"])
+            claims.append(_claim_record(claim, [link]) | {"id": f"{name}.{claim['id']}"})
+    title, summary = "All verdicts", f"{len(claims)} statements of {len(studies)} studies."
+    return _table(content | {"title": title, "summary": summary, "reservation": ""}, claims)
+
+
+def _content_of(path: str | Path) -> NamedValues:
+    """Return the content of claims.json at `path`."""
+    return from_json(Path(path).read_text("utf-8"), str(path))
+
+
+def _table(content: Record, claims: Sequence[NamedValues]) -> NamedValues:
+    """Return the table of statements `claims`, with the texts of claims.json (`content`)."""
     numbers = Counter(claim["verdict"] for claim in claims)
     return {
         **{name: content[name] for name in ("title", "scale", "reservation", "summary")},
@@ -51,8 +84,8 @@ def read_verdicts(path: str | Path, shows: Mapping[str, Sequence[str]]) -> Named
     }
 
 
-def _claim_record(claim: Record, shows: Mapping[str, Sequence[str]]) -> NamedValues:
-    """Return the fields of a statement of claims.json for the table."""
+def _claim_record(claim: Record, figures: Sequence[FigureLink]) -> NamedValues:
+    """Return the fields of a statement of claims.json for the table, with links to `figures`."""
     deciding = [f"{number['label']}: {_in_short(number)}" for number in claim["numbers"][:1]]
     detectable = claim["detectable"]
     return {
@@ -67,9 +100,7 @@ def _claim_record(claim: Record, shows: Mapping[str, Sequence[str]]) -> NamedVal
         "numbers": [
             in_symbols(f"{number['label']}: {number['text']}") for number in claim["numbers"]
         ],
-        "figures": [
-            FigureLink(name, label_of(name)) for name in figures_on(claim["experiments"], shows)
-        ],
+        "figures": figures,
     }
 
 

@@ -46,6 +46,15 @@ class StudyProducts:
         if self.task_folders:
             self.combined = name if study.modules else f"{name}/data"
 
+    @property
+    def shown_to_claims(self) -> dict[str, list[str]]:
+        """The experiments in each figure, by figure, as claims name them: tasks by the study."""
+        tasks = {TASKS, *self.study.modules}
+        return {
+            figure: [self.name if name in tasks else name for name in names]
+            for figure, names in self.shown.items()
+        }
+
     def has(self, file: str) -> bool:
         """Return whether the folder of the study contains a file of this name."""
         return Path(self.folder, file).exists()
@@ -336,16 +345,9 @@ class Studies:
     def page_shows(self, study_folder: str) -> str:
         """Return the experiments in each figure of a study, JSON by figure, as claims name them.
 
-        Tasks have the name of the study. Its tables are in `study_folder`.
+        Its tables are in `study_folder`.
         """
-        products = self.by_table_folder[study_folder]
-        tasks = {TASKS, *products.study.modules}
-        return json.dumps(
-            {
-                figure: [products.name if name in tasks else name for name in shown]
-                for figure, shown in products.shown.items()
-            }
-        )
+        return json.dumps(self.by_table_folder[study_folder].shown_to_claims)
 
     def page_figures(self, scale: str, study_folder: str) -> list[str]:
         """Return the paths of the pictures on the page of a study.

@@ -244,6 +244,26 @@ def test_verdicts_link_to_figures_and_figures_to_verdicts(files):
     assert [section.count('href="#first"') for section in sections] == [1, 0, 0, 0]
 
 
+def test_all_verdicts_of_several_studies_are_one_table(files, tmp_path):
+    other = CLAIMS | {"claims": [claim("first", experiments=("walls.bed",)), claim("none")]}
+    (tmp_path / "walls.json").write_text(json.dumps(other))
+    paper = {"title": "The paper", "page": "report.html", "shows": SHOWS}
+    walls = {"title": "Walls", "page": "walls/page.html", "shows": {"walls": ["walls.bed"]}}
+    arguments = ["verdicts", str(files / "claims.json"), str(tmp_path / "walls.json")]
+    arguments += ["--studies", json.dumps({"paper": paper, "walls": walls})]
+    assert main([*arguments, "--output", str(tmp_path / "verdicts.html")]) == 0
+    text = (tmp_path / "verdicts.html").read_text("utf-8")
+    names = ["paper.first", "paper.second", "walls.first", "walls.none"]
+    assert re.findall(r'<tr id="([\w.]+)"', text) == names
+    assert re.findall(r'<td><a href="(.*)">(.*)</a> </td>', text) == [
+        ("report.html#fig1a", "The paper"),
+        ("report.html#fig1a", "The paper"),
+        ("walls/page.html#walls", "Walls"),
+        ("walls/page.html", "Walls"),
+    ]
+    assert "4 statements of 2 studies." in text and "holds 3" in text and "fails 1" in text
+
+
 def test_a_figure_that_shows_all_data_of_a_statement_stands_for_the_others():
     assert figures_on(["vibrated"], SHOWS) == ["fig1a"]
     assert figures_on(["vibrated", "walls"], SHOWS) == ["fig1b"]
