@@ -39,9 +39,15 @@ def read_verdicts(path: str | Path, shows: Mapping[str, Sequence[str]]) -> Named
     """
     content = _content_of(path)
     claims = [
-        _claim_record(claim, [FigureLink(f"#{name}", label_of(name)) for name in figures])
+        _claim_record(
+            claim,
+            content["reservation"],
+            [
+                FigureLink(f"#{name}", label_of(name))
+                for name in figures_on(claim["experiments"], shows)
+            ],
+        )
         for claim in content["claims"]
-        for figures in [figures_on(claim["experiments"], shows)]
     ]
     return _table(content, claims)
 
@@ -60,7 +66,8 @@ def read_verdicts_of_studies(
         for claim in content["claims"]:
             anchors = [f"#{figure}" for figure in figures_on(claim["experiments"], study["shows"])]
             link = FigureLink("".join([study["page"], *anchors[:1]]), study["title"])
-            claims.append(_claim_record(claim, [link]) | {"id": f"{name}.{claim['id']}"})
+            record = _claim_record(claim, content["reservation"], [link])
+            claims.append(record | {"id": f"{name}.{claim['id']}"})
     title, summary = "All verdicts", f"{len(claims)} statements of {len(studies)} studies."
     return _table(content | {"title": title, "summary": summary, "reservation": ""}, claims)
 
@@ -84,8 +91,11 @@ def _table(content: Record, claims: Sequence[NamedValues]) -> NamedValues:
     }
 
 
-def _claim_record(claim: Record, figures: Sequence[FigureLink]) -> NamedValues:
-    """Return the fields of a statement of claims.json for the table, with links to `figures`."""
+def _claim_record(claim: Record, reservation: str, figures: Sequence[FigureLink]) -> NamedValues:
+    """Return the fields of a statement of claims.json for the table, with links to `figures`.
+
+    `reservation` says why its criterion was not fixed before these data; "" if it was.
+    """
     deciding = [f"{number['label']}: {_in_short(number)}" for number in claim["numbers"][:1]]
     detectable = claim["detectable"]
     return {
@@ -93,7 +103,7 @@ def _claim_record(claim: Record, figures: Sequence[FigureLink]) -> NamedValues:
         **{name: in_symbols(claim[name]) for name in ("reason", "criterion")},
         "kind": KINDS[claim["verdict"]],
         "statement": in_symbols(claim["text"]),
-        "fixed": f"Fixed {claim['fixed']}.",
+        "fixed": reservation or f"Fixed {claim['fixed']}.",
         "data": ", ".join(claim["experiments"]),
         "detectable": "not known" if detectable is None else f"{detectable:.2g}",
         "deciding": in_symbols("".join(deciding)),

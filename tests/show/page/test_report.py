@@ -244,6 +244,13 @@ def test_verdicts_link_to_figures_and_figures_to_verdicts(files):
     assert [section.count('href="#first"') for section in sections] == [1, 0, 0, 0]
 
 
+def test_criteria_of_other_data_are_not_said_to_be_fixed(files):
+    (files / "claims.json").write_text(json.dumps(CLAIMS | {"reservation": RESERVED}))
+    assert front(files) == 0
+    text = (files / "report.html").read_text("utf-8")
+    assert "Fixed before" not in text and text.count(RESERVED) == 1 + len(CLAIMS["claims"])
+
+
 def test_all_verdicts_of_several_studies_are_one_table(files, tmp_path):
     other = CLAIMS | {"claims": [claim("first", experiments=("walls.bed",)), claim("none")]}
     (tmp_path / "walls.json").write_text(json.dumps(other))
