@@ -296,6 +296,8 @@ def test_sliders_act_at_once_and_the_address_stores_them(page):
     page.script("location.hash = '#vibrated/r0.7/beta1'")
     page.wait(lambda: state_of(page)[2:] == [0.7, 1, "vibrated"])
     assert page.text(".law") == "Lun's formula, for averages over collisions"
+    assert [page.text(f".of-{average}") for average in ("time", "collisions")] == ["none", "0.500"]
+    assert page.find(".collisional")[0].is_displayed()
     page.find("input.r")[0].send_keys("\ue014")  # the arrow to the right
     assert state_of(page)[2] == pytest.approx(0.71)
 
