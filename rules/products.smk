@@ -139,7 +139,7 @@ rule figure_of_evidence:
 
 rule page:
     input:
-        of_pages("page/base.html", "page/explore.html", "page/explore.css"),
+        of_pages("page/base.html", "page/explore.html", "page/theme.css", "page/explore.css"),
         of_pages("page/explore.js", "page/plots.js", "page/picture.js"),
         from_wildcards(run_products.points),
         data=from_wildcards(run_products.data),
@@ -165,7 +165,7 @@ rule page:
 rule living_page:
     # the same at any scale: the page limits the size of its gas
     input:
-        of_pages("page/base.html", "living/page.html", "living/page.css"),
+        of_pages("page/base.html", "living/page.html", "page/theme.css", "living/page.css"),
         of_project(*sorted(Path(PACKAGE, "show/living").glob("*.js"))),
         config=of_project(CONFIG),
     output:
@@ -182,7 +182,8 @@ rule living_page:
 
 rule document:
     input:
-        of_pages("page/base.html", "page/document.html", "page/document.css"),
+        of_pages("page/base.html", "page/document.html"),
+        of_pages("page/theme.css", "page/document.css"),
         shown=from_wildcards(products.document_source),
     output:
         report(
@@ -207,22 +208,44 @@ rule document:
 rule front:
     # precedes Snakemake's report, which opens on the graph of the workflow
     input:
-        of_pages("page/base.html", "page/front.html", "page/front.css"),
+        of_pages("page/base.html", "page/front.html", "page/verdicts.html"),
+        of_pages("page/theme.css", "page/front.css", "page/verdicts.css", "page/verdicts.js"),
         readme=of_project(f"{studies.paper.folder}/README.md"),
         figures=from_wildcards(run_products.paper_pictures),
-        claims="results/{scale}/claims.md",
+        claims="results/{scale}/claims.json",
     output:
         "results/{scale}/report.html",
     log:
         "logs/{scale}/report.log",
     params:
-        code=code_of("show.pages"),
+        code=code_of("show.report"),
+        shows=from_wildcards(studies.page_shows, study_folder=""),
         reservation=from_wildcards(studies.reservation_of_readme, study_folder=""),
     message:
         "write {output}"
     shell:
         "python -P -m roughgas.steps front {input.claims:q} --figures {input.figures:q}"
-        " --readme {input.readme:q} --reservation={params.reservation:q} --output {output:q} > {log:q} 2>&1"
+        " --shows {params.shows:q} --readme {input.readme:q} --reservation={params.reservation:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule page_of_verdicts:
+    # of the paper and of all studies beyond it
+    input:
+        of_pages("page/base.html", "page/all_verdicts.html", "page/verdicts.html"),
+        of_pages("page/theme.css", "page/document.css", "page/verdicts.css", "page/verdicts.js"),
+        claims=from_wildcards(run_products.all_claims),
+    output:
+        "results/{scale}/verdicts.html",
+    log:
+        "logs/{scale}/verdicts.log",
+    params:
+        code=code_of("show.report"),
+        studies=lambda wildcards: run_products.judged_studies(),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps verdicts {input.claims:q} --studies {params.studies:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule effective_config:

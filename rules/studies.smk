@@ -155,7 +155,7 @@ rule study_slides:
     # a page with a slider through the pictures of the study's slides.py
     input:
         of_pages("page/base.html", "page/document.css", "page/slides.html"),
-        of_pages("page/slides.css", "page/slides.js"),
+        of_pages("page/theme.css", "page/slides.css", "page/slides.js"),
         data=from_wildcards(drawings.slides_data),
     output:
         "figures/{folder}{study}.html",
@@ -260,6 +260,8 @@ rule long_table:
 
 rule study_page:
     input:
+        of_pages("page/base.html", "page/study.html", "page/verdicts.html"),
+        of_pages("page/theme.css", "page/document.css", "page/verdicts.css", "page/verdicts.js"),
         lambda wildcards: of_project(*studies.readme(wildcards.study_folder)),
         unpack(from_wildcards(studies.page_tables)),
         figures=from_wildcards(studies.page_figures),
@@ -274,7 +276,8 @@ rule study_page:
     log:
         "logs/{scale}/{study_folder}page.log",
     params:
-        code=code_of("show.pages"),
+        code=code_of("show.report"),
+        shows=from_wildcards(studies.page_shows),
         folder=unrecorded(studies.folder_of_tables),
         title=from_wildcards(studies.title_of_tables),
         options=lambda wildcards, input: studies.page_options(input),
@@ -283,7 +286,7 @@ rule study_page:
         "write {output}"
     shell:
         "python -P -m roughgas.steps study_page {params.folder:q} --title={params.title:q}"
-        " --figures {input.figures:q} {params.options:q} --reservation={params.reservation:q}"
+        " --figures {input.figures:q} --shows {params.shows:q} {params.options:q} --reservation={params.reservation:q}"
         " --output {output:q} > {log:q} 2>&1"
 
 

@@ -82,7 +82,7 @@ STEPS: dict[str, str | Function] = {
     "explore": "show.explore:write_page",
     "figure": "show.gallery:draw",
     "fix_criteria": fix_criteria,
-    "front": "show.pages:write_front",
+    "front": "show.report:write_front",
     "long_table": "claims.published:write_long",
     "living": "show.living:write_living",
     "numbers": "claims.numbers:write",
@@ -90,10 +90,11 @@ STEPS: dict[str, str | Function] = {
     "run_times": "results.tables:write_times",
     "study_evidence": "claims.published:write",
     "study_movie": "show.gallery:movie_of_study",
-    "study_page": "show.pages:write_study",
+    "study_page": "show.report:write_study",
     "study_slides": "show.slides:write_slides",
     "task": "tasks.running:run_task",
     "table": "results.tables:write_table",
+    "verdicts": "show.report:write_verdicts",
 }
 
 

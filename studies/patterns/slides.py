@@ -12,7 +12,8 @@ from .ball import CYCLE, ball_heights, flights
 from .figure import draw_cycles, draw_height, measured_text, published_text, size_text
 from .published import CYCLES, Panel, layers_of_panels, panels
 
-WIDTH, HEIGHT = 8.4, 4.2  # inches
+WIDTH, HEIGHT, LAYER_HEIGHT = 5.0, 3.6, 2.7  # inches: letters are legible on a phone
+FLOOR_BOTTOM = -1.2  # amplitudes of the floor
 SETUP_TEXT = """\
 A layer of spheres, 5.42 diameters D deep, lies on a plate that moves as a sine; Γ is its largest
 acceleration over gravity. The layer lands like a ball that does not bounce (line): it stays on the
@@ -59,21 +60,27 @@ def _draw_balls():
     figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
     phase = np.linspace(0.0, CYCLES * CYCLE, 1000)
     accelerations = list(dict.fromkeys(panel.gamma for panel in panels()))
-    for axes, gamma in zip(figure.subplots(2, 3, sharex=True).flat, accelerations, strict=True):
+    rows = figure.subplots(2, 3, sharex=True, sharey=True)
+    for axes, gamma in zip(rows.flat, accelerations, strict=True):
         axes.plot(phase / CYCLE, ball_heights(gamma, phase), color=LINE_STYLES[1].colour)
-        axes.fill_between(phase / CYCLE, np.sin(phase), -1.2, color=GREY, lw=0)
+        axes.fill_between(phase / CYCLE, np.sin(phase), FLOOR_BOTTOM, color=GREY, lw=0)
         axes.set_title(f"Γ = {gamma:g}", fontsize=9, loc="left")
-        axes.set(yticks=[], xlim=(0, CYCLES), ylim=(-1.2, None))
-    figure.supxlabel("cycles of the floor", fontsize=8)
+        axes.set_xlim(0, CYCLES)
+    axes.set_ylim(FLOOR_BOTTOM, None)
+    figure.supxlabel("cycles of the floor", fontsize=9)
+    figure.supylabel("height / amplitude of the floor", fontsize=9)
     return figure
 
 
 def _draw_layer(layer):
     """Draw four cycles from above, and the mean height over them."""
-    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=(2.2, 1))
-    draw_cycles(above.subplots(1, CYCLES), layer)
+    figure = Figure(figsize=(WIDTH, LAYER_HEIGHT), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1.3, 1))
+    row = above.subplots(1, CYCLES)
+    draw_cycles(row, layer)
+    for axes in row:
+        axes.title.set_fontsize(9)
     axes = below.subplots()
     draw_height(axes, layer, {"color": THEORY})
-    axes.tick_params(labelsize=7)
+    axes.tick_params(labelsize=8)
     return figure

@@ -2,11 +2,11 @@
 
 import functools
 import math
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
 from raw import build, measured, protocols, typed
+from tests.browser.screens import boxes, emulated_screen
 
 from roughgas import config, theory
 from roughgas.kernel.state import EXPONENT, LAST_FIRST, LAST_SECOND
@@ -286,15 +286,18 @@ def test_sliders_act_at_once_and_the_address_stores_them(page):
     move_slider(page, "r", 0.8)
     move_slider(page, "beta", -0.5)
     assert state_of(page)[2:] == [0.8, -0.5, "cooling"]
-    assert float(page.text(".theory")) == pytest.approx(theory.cooling_ratio(0.8, -0.5), abs=6e-4)
-    assert page.text(".collisional") == "only of a driven gas"
+    shown_theory = page.text(".of-time")
+    assert float(shown_theory) == pytest.approx(theory.cooling_ratio(0.8, -0.5), abs=6e-4)
+    assert not page.find(".collisional")[0].is_displayed()
     page.find("input[value=sheared]")[0].click()
     assert state_of(page)[2:] == [0.8, -0.5, "sheared"]
-    assert float(page.text(".theory")) == pytest.approx(theory.lun_ratio(-0.5, 0.5), abs=6e-4)
+    assert float(page.text(".of-time")) == pytest.approx(theory.lun_ratio(-0.5, 0.5), abs=6e-4)
     assert page.script("return location.hash") == "#sheared/r0.8/beta-0.5"
     page.script("location.hash = '#vibrated/r0.7/beta1'")
     page.wait(lambda: state_of(page)[2:] == [0.7, 1, "vibrated"])
     assert page.text(".law") == "Lun's formula, for averages over collisions"
+    assert [page.text(f".of-{average}") for average in ("time", "collisions")] == ["none", "0.500"]
+    assert page.find(".collisional")[0].is_displayed()
     page.find("input.r")[0].send_keys("\ue014")  # the arrow to the right
     assert state_of(page)[2] == pytest.approx(0.71)
 
@@ -322,7 +325,7 @@ def test_two_gases_side_by_side(file, page):
     assert page.script("return location.hash") == "#cooling/r0.9/beta0.5/vs/r0.99/beta0.5"
     assert len(page.find("canvas.gas")) == len(page.find(".present")) == 2
     page.open(file, "#sheared/r0.9/beta-0.5/vs/r0.9/beta1/q1")
-    assert [element.text for element in page.find(".theory")] == ["0.091", "0.500"]
+    assert [element.text for element in page.find(".of-time")] == ["0.091", "0.500"]
     page.wait(lambda: page.script("return panels[1].run.gas.collisions") > 20)
     times = page.script("return panels.map(({ run }) => run.gas.time)")
     assert times[0] == pytest.approx(times[1], rel=0.05)
@@ -331,11 +334,12 @@ def test_two_gases_side_by_side(file, page):
     assert page.script("return location.hash") == "#sheared/r0.9/beta-0.5"
 
 
+@pytest.mark.parametrize("scene", ["vibrated", "sheared"])
 @pytest.mark.parametrize("second", ["", "/vs/r0.9/beta0"])
 @pytest.mark.parametrize("size", [(1920, 1080), (1280, 720), (1024, 768)])
-def test_for_projectors_letters_are_large_and_all_is_visible(file, page, size, second):
+def test_for_projectors_letters_are_large_and_all_is_visible(file, page, size, second, scene):
     with emulated_screen(page, *size, mobile=False):
-        page.open(file, f"#sheared/r0.9/beta0.5{second}")
+        page.open(file, f"#{scene}/r0.9/beta0.5{second}")
         press(page, "p")
         (mode,) = page.find("#projector")
         assert mode.get_attribute("aria-pressed") == "true"
@@ -346,7 +350,7 @@ def test_for_projectors_letters_are_large_and_all_is_visible(file, page, size, s
         check_that_it_fits_its_panel(page, ".mean")
         for element in page.find(".present"):
             assert float(element.value_of_css_property("font-size")[:-2]) > size[1] / 36
-        assert not any(element.is_displayed() for element in page.find("table, .question, footer"))
+        assert not any(element.is_displayed() for element in page.find(".more, .question, footer"))
         press(page, "p")
         assert page.find("footer")[0].is_displayed()
 
@@ -374,31 +378,13 @@ def test_answers_to_questions_agree_with_the_kernel(page, name, material, R):
     assert f"{R:.3f}".rstrip("0") in page.script("return QUESTIONS.map(one => one.why).join()")
 
 
-@contextmanager
-def emulated_screen(page, width, height, mobile=True):
-    size = {"width": width, "height": height, "deviceScaleFactor": 1 + mobile, "mobile": mobile}
-    page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
-        page.wait(lambda: page.script("return innerWidth") == width)
-        yield
-    finally:
-        page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-
-
-def boxes(page, selector):
-    return page.script(
-        """return [...document.querySelectorAll(arguments[0])]
-        .map(one => one.getBoundingClientRect().toJSON())""",
-        selector,
-    )
-
-
 def check_that_it_fits_its_panel(page, selector):
     """Check that an element fits its panel when it shows the longest mean."""
     page.script(
-        "playing = false; go(); for (const one of panels) one.say('mean', '0.2222 ± 0.0222')"
+        "playing = false; go(); for (const one of panels) "
+        "for (const name of ['mean', 'collisional']) one.say(name, '0.2222 ±\u00a00.0222')"
     )
-    for panel, box in zip(boxes(page, ".controls"), boxes(page, selector), strict=True):
+    for panel, box in zip(boxes(page, ".results"), boxes(page, selector), strict=True):
         assert panel["left"] - 1 <= box["left"] < box["right"] <= panel["right"] + 1
     assert page.script("return document.documentElement.scrollWidth <= innerWidth")
 

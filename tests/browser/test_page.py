@@ -58,18 +58,22 @@ def check_numbers(page, finished_run, experiment, r, beta):
     over_time = "R over time" if "R_collisional" in data else "R"
     assert agrees(table[over_time], R, stderr)
     collisional_rows = {
-        name: value for name, value in table.items() if name.startswith("R over collisions")
+        name: value for name, value in table.items() if name.startswith("R over collisions,")
     }
     assert bool(collisional_rows) == ("R_collisional" in data)
     for name, value in collisional_rows.items():
         assert ("unlike Lun's formula" in name) == (experiment == "sheared")
-        collisional = (reduced_point[f"R_collisional{end}"].item() for end in ("", "_stderr"))
-        assert agrees(value, *collisional)
-    low, high = map(float, table["95 % interval"].replace("−", "-").split(" to "))
+        R_collisional, error = (
+            reduced_point[f"R_collisional{end}"].item() for end in ("", "_stderr")
+        )
+        assert agrees(value, R_collisional, error)
+        shown = table["R over collisions − theory"].lstrip("+−")
+        assert agrees(shown, abs(R_collisional - theory), error)
+    low, high = map(float, table[f"95 % interval of {over_time}"].replace("−", "-").split(" to "))
     assert (low, high) == pytest.approx((R - ci95, R + ci95), abs=0.06 * ci95)
     (theory_text,) = (value for name, value in table.items() if name.startswith("theory"))
     assert float(theory_text) == pytest.approx(theory, abs=5.1e-5)
-    assert agrees(table["R − theory"].lstrip("+−"), abs(R - theory), stderr)
+    assert agrees(table[f"{over_time} − theory"].lstrip("+−"), abs(R - theory), stderr)
     steady = "found" if reduced_point.equilibrated > 0.5 else "not found"
     if reduced_point.equilibrated < 0:
         steady = "not known: too little was measured"
@@ -133,6 +137,33 @@ def test_plots_show_the_datasets(page, finished_run):
     residual = data.R - predicted_ratio(data.attrs, 0.8, data.beta.values)
     assert drawn[3] == pytest.approx(residual.values.tolist(), abs=1e-12)
     assert 0 < drawn[4] <= 200
+
+
+def test_either_average_can_be_plotted(page, finished_run):
+    """Lun's formula is of averages over collisions, the paper's R of averages over time."""
+    data = read_reduced(finished_run.folder / "results/tiny/vibrated.nc").sel(r=0.8)
+    shown = """const { places } = drawnRows().find(one => one.label === "r = 0.8");
+        return [places.map(one => shownR(one.choice.point)), at("legend").lastChild.textContent];"""
+    assert page.script(shown) == [
+        data.R.values.tolist(),
+        "theory: Lun's formula, of averages over collisions",
+    ]
+    select(page, "mean", "collisions")
+    assert page.script(shown) == [data.R_collisional.values.tolist(), "theory: Lun's formula"]
+    assert page.text("#averaged") == "averaged over collisions, as Lun's formula"
+    select(page, "experiment", "cooling")
+    assert not page.find("#mean")[0].is_displayed()
+    assert page.text("#averaged") == "averaged over time"
+
+
+def test_energies_have_units(page):
+    labels = """return [PLOTS.energies.axes[1].label,
+        [...document.querySelectorAll("#energies .u-label")].map(one => one.textContent)];"""
+    parts = ["time in T", "translation, E_trans", "rotation, E_rot"]
+    assert page.script(labels) == ["energy / (m a²/T²)", parts]
+    select(page, "experiment", "cooling")
+    parts[0] = "collisions per particle"
+    assert page.script(labels) == ["energy / initial E_trans", parts]
 
 
 def test_a_choice_can_be_shared(finished_run, browser):

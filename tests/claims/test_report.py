@@ -1,6 +1,7 @@
 """The report of verdicts, and the page of criteria."""
 
 import json
+import re
 
 import pytest
 from synthetic import reduced
@@ -34,17 +35,22 @@ def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
         assert claim["verdict"] == finding.verdict and claim["reason"] == finding.reason
         assert statement.quote in markdown and finding.reason in markdown
         assert f"**{claim['verdict']}**" in markdown
+        assert claim["text"] == statement.text and claim["mark"] == statement.fixed.mark
         assert claim["fixed"] == statement.fixed.text and claim["tries"] == statement.fixed.tries
         if claim["verdict"] != NOT_TESTED:
             deciding = claim["numbers"][0]
             assert claim["deviation"] == deciding["value"] and claim["sigma"] == deciding["sigma"]
             assert claim["ci95"] == deciding["ci95"] >= 1.9 * claim["error"]
             assert claim["detectable"] > 0
+            assert f"{deciding['label']}: {deciding['text']}" in markdown
     ours = [statement.name for statement in PAPER.statements if statement.ours]
     assert ours == ["lun_over_collisions", "excess_is_of_averaging"]
     assert [claim["id"] for claim in content["claims"] if claim["ours"]] == ours
     assert "Of 18 statements: " in markdown and "Of 2 statements of ours: " in markdown
-    assert markdown.count("| Ours: ") == markdown.count("> Ours: ") == 2
+    headings = re.findall(r"^### \d+\. (.*)$", markdown, re.MULTILINE)
+    assert headings == [statement.text for statement in PAPER.statements]
+    assert markdown.count("| Ours: ") == 2
+    assert content["summary"] in markdown and content["how_to_read"] in markdown
 
 
 def test_criteria_that_were_not_fixed_before_the_data_are_said_to_be_so():
@@ -55,7 +61,11 @@ def test_criteria_that_were_not_fixed_before_the_data_are_said_to_be_so():
     assert "Fixed before its data." in markdown and "Not fixed" not in markdown
     copied = PAPER._replace(reservation="Of other data.")
     markdown = as_markdown(copied, findings, "small")
-    assert json.loads(as_json(copied, findings, {}, "small"))["reservation"] == "Of other data."
+    content = json.loads(as_json(copied, findings, {}, "small"))
+    assert content["reservation"] == "Of other data."
+    assert {claim["mark"] for claim in content["claims"]} == {
+        "criterion not fixed before these data"
+    }
     assert "**Not fixed before these data.** Of other data." in markdown
     assert "Fixed before" not in markdown and "in part after" not in markdown
     assert markdown.count("(criterion not fixed before these data)") == len(PAPER.statements)

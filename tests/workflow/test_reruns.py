@@ -29,7 +29,8 @@ OF_STUDIES = STUDIED | WITHOUT_FIGURES | {"study_page", "study_slides", "plot"}
 OF_STUDIES |= {"table_of_papers", "quoted_by_documentation"}
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b"}
 TABLES = {"table", "table_of_extensions", "run_times"}
-REDUCED = FIGURES | OF_STUDIES | TABLES | {"reduce", "claims", "page", "document"}
+JUDGED = {"claims", "page_of_verdicts"}
+REDUCED = FIGURES | OF_STUDIES | TABLES | JUDGED | {"reduce", "page", "document"}
 POINTS = REDUCED | {"seeds", "point"}
 COMPILED = POINTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
@@ -39,7 +40,7 @@ ACCURACY = ACCURACY_FIGURES | {"combine", "claims", "document"}
 COVERAGE = {"coverage", "combine", "document"}
 OF_TASKS = {"combine", "profiles", "finite_size", "runaway", "exact"}
 OF_DSMC = {"exact", "finite_size", "runaway", "megias_santos"}
-OF_DSMC |= {"combine", "claims", "study_page"}
+OF_DSMC |= JUDGED | {"combine", "study_page"}
 STUDIES = ACCURACY | COVERAGE | OF_TASKS
 STUDIES |= {"statistical", "models", "discretisation", "waiting"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
@@ -54,8 +55,8 @@ EDITED = {  # file of the package: rules, figures and studies that rerun after a
     "scene/__init__.py": SIMULATED | {"effective_config", "living_page"},
     "config/forms.py": {"effective_config", "document", "living_page"},
     "results/tables.py": TABLES | {"document", "study_page"},
-    "../../studies/paper/claims.yaml": FIGURES | {"claims", "document"},  # which it titles
-    PAPER_FIGURE: FIGURES | {"claims", "document"},
+    "../../studies/paper/claims.yaml": FIGURES | JUDGED | {"document"},  # which it titles
+    PAPER_FIGURE: FIGURES | JUDGED | {"document"},
     "show/page/explore.js": {"page"},
     "show/movies/__init__.py": {"movie"},
     "tasks/dsmc.py": ACCURACY | {"models", "transport", "transport_inertia"} | OF_DSMC,

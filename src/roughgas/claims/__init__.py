@@ -306,9 +306,16 @@ def as_json(
         "title": subject.title,
         "scale": scale,
         "reservation": subject.reservation,
+        "about": subject.about,
+        "how_to_read": HOW_TO_READ.format(**TOLERANCES),
+        "summary": _counts(subject.statements, findings),
+        "after": subject.after,
         "tolerances": TOLERANCES,
         "data": {name: _data(data) for name, data in sorted(datasets.items())},
-        "claims": list(map(_claim, subject.statements, findings)),
+        "claims": [
+            _claim(statement, finding, subject.reservation)
+            for statement, finding in zip(subject.statements, findings, strict=True)
+        ],
     }
     return base.as_json(content, indent=1) + "\n"
 
@@ -325,24 +332,31 @@ def _data(data: xr.Dataset) -> NamedValues:
     return counts | {"seeds": int(data.n_seeds.max()), "theory": data.attrs["theory"]} | swept
 
 
-def _claim(statement: Statement, finding: Finding) -> NamedValues:
+def _claim(statement: Statement, finding: Finding, reservation: str) -> NamedValues:
     """Return a statement and its finding by name, as they stand in JSON.
+
+    `text` is the statement as pages show it, `mark` a remark beside its verdict, "" without one.
 
     The deciding number, the first, has `deviation` (its value), `error` (standard error), `ci95`
     (half width of its 95 % interval) and `sigma` (distance from 0); `detectable` is the smallest
     deviation that the test could have seen, null if it is unknown.
     """
-    numbers = [{"label": label} | value.record() for label, value in finding.numbers]
+    numbers = [
+        {"label": label} | value.record() | {"text": text(value)}
+        for label, value in finding.numbers
+    ]
     deciding = numbers[0] if numbers else {}
     detectable = finding.smallest_deviation
     return {
         "id": statement.name,
         "quote": statement.quote,
         "ours": statement.ours,
+        "text": statement.text,
         "criterion": statement.criterion,
         "fixed": statement.fixed.text,
         "fixed_when": statement.fixed.when,
         "tries": statement.fixed.tries,
+        "mark": _mark(statement, reservation),
         "experiments": list(statement.experiments),
         "verdict": finding.verdict,
         "reason": finding.reason,
@@ -397,9 +411,14 @@ def _cells(
 ) -> tuple[object, ...]:
     """Return the cells of a statement in the table of verdicts; `number` counts from 1."""
     deciding = "".join(f"{label}: {text(value)}" for label, value in finding.numbers[:1])
-    mark = "criterion not fixed before these data" if reservation else statement.fixed.mark
+    mark = _mark(statement, reservation)
     verdict = f"**{finding.verdict}**{f' ({mark})' if mark else ''}"
     return number, statement.text, deciding, _detectable(finding), verdict
+
+
+def _mark(statement: Statement, reservation: str) -> str:
+    """Return a remark beside the verdict on a statement: when its criterion was fixed, or ""."""
+    return "criterion not fixed before these data" if reservation else statement.fixed.mark
 
 
 def _detectable(finding: Finding) -> str:
@@ -416,8 +435,8 @@ def _details(number: int, statement: Statement, finding: Finding, reservation: s
     fixed = reservation or f"Fixed {statement.fixed.text}."
     numbers = "".join(f"\n- {label}: {text(value)}" for label, value in finding.numbers)
     return (
-        f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.text}\n\n"
+        f"### {number}. {statement.text}\n\n**{finding.verdict}**: "
         f"{finding.reason}\n\n- criterion: {statement.criterion} {fixed}\n"
-        f"- data: {', '.join(statement.experiments)}\n"
+        f"- name: `{statement.name}`; data: {', '.join(statement.experiments)}\n"
         f"- smallest deviation that the test could have seen: {_detectable(finding)}{numbers}"
     )

@@ -88,7 +88,7 @@ def write_page(
     pages.write_page(
         output,
         "page/explore.html",
-        ["page/uplot/uPlot.min.css", "page/explore.css"],
+        ["page/theme.css", "page/uplot/uPlot.min.css", "page/explore.css"],
         [pages.text_of(f"page/{name}") for name in PROGRAM],
         scale=scales[0],
         data=pages.markup(pages.data_of(data)),
@@ -230,7 +230,7 @@ def _coordinates(third_value, r, beta):
 
 def time_series(seed: Any, length: int = MAX_SERIES_LENGTH) -> NamedValues:
     """Return R and both energies of a seed (a Dataset) over time, as means over at most `length`
-    blocks.
+    blocks, without the samples after the last whole block.
 
     The result has lists of equal length: `at`, the times, `R`, `E_trans` and `E_rot`. `clock` is
     the kind of times, "time", in T, or "collisions_per_particle"; `block` is the number of samples
@@ -242,8 +242,12 @@ def time_series(seed: Any, length: int = MAX_SERIES_LENGTH) -> NamedValues:
         name: seed[f"{name}_series"].values for name in ("R", "E_trans", "E_rot")
     }
     window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
-    block = math.ceil(columns["at"].size / length)
-    thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
+    size = columns["at"].size
+    block = math.ceil(size / length)
+    whole = size // block * block  # a shorter last block would be noisier than the others
+    thinned = {
+        name: rounded(block_means(values[:whole], block)) for name, values in columns.items()
+    }
     return {"clock": clock, "block": block, "measured": window} | thinned
 
 

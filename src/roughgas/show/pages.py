@@ -1,4 +1,4 @@
-"""Pages of HTML that load nothing: documents, the report's front page, and the page of a study.
+"""Pages of HTML that load nothing: their making, documents, and the captions of figures.
 
 Templates (Jinja2), style sheets and programs are in page/ and living/. Text from files is escaped,
 and the content security policy of a page admits only the page's own programs.
@@ -10,14 +10,12 @@ import json
 import re
 from collections.abc import Iterable, Sequence
 from html import escape
-from itertools import takewhile
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from roughgas.base import InputError, NamedValues, in_rst_with_bold, markdown, unknown_name_error
+from roughgas.base import InputError, in_rst_with_bold
 from roughgas.base.files import readme, write_text
-from roughgas.show.catalogue import FIGURES
 
 SHOW_FOLDER = Path(__file__).parent
 POLICY = {
@@ -30,14 +28,6 @@ POLICY = {
 }
 # brackets do not nest, so that matching takes linear time
 PICTURE_LINK = re.compile(r"!\[[^][]*\]\((?:[^()]*[^\w.()])?([\w.]+)\.png\)")
-RELATIVE_LINK = re.compile(r"(?<!!)\[([^][]*)\]\((?!https?:)[^()]*\)")
-FINDINGS_BEGIN = re.compile(r"^(?=##|!\[)", re.MULTILINE)
-"""The first heading or picture of README.md of a study, before which it states a question."""
-NOT_JUDGED = "**Not judged yet.** "
-COLUMNS = ("experiment", "parameter", "value", "r", "beta", "n_seeds", "R", "R_stderr", "R_theory")
-MAX_TABLE_ROWS = 400
-"""Largest number of rows of a table in a page; the CSV file has all rows."""
-STEADY_WORDS = {1: "yes", 0: "no", -1: "not known"}
 
 
 def write_page(
@@ -117,15 +107,15 @@ def write_document(input: str | Path, *, output: str | Path) -> None:
         body = CONVERTERS[source.suffix](source.read_bytes(), source.parent)
     except UnicodeDecodeError as error:
         raise InputError("document", source, "be text in UTF-8") from error
-    variables = {"title": source.name, "body": markup(body)}
-    write_page(output, "page/document.html", ["page/document.css"], **variables)
+    css = ["page/theme.css", "page/document.css"]
+    write_page(output, "page/document.html", css, title=source.name, body=markup(body))
 
 
 def markdown_as_html(content: bytes, folder: Path | None = None) -> str:
     """Return Markdown, bytes in UTF-8, as HTML; HTML in the Markdown is escaped.
 
-    Pictures in `folder` or below it are embedded, so that the page loads nothing. Raises
-    UnicodeDecodeError for other bytes.
+    Pictures in `folder` or below it are embedded, so that the page loads nothing; the name of a
+    picture is its anchor. Raises UnicodeDecodeError for other bytes.
     """
     from markdown_it import MarkdownIt
 
@@ -136,13 +126,14 @@ def markdown_as_html(content: bytes, folder: Path | None = None) -> str:
             path = Path(folder, unquote(str(inline.attrGet("src")))).resolve()
             picture_type = PICTURE_TYPES.get(path.suffix)
             if picture_type and path.is_relative_to(folder.resolve()) and path.is_file():
+                inline.attrSet("id", path.stem)
                 inline.attrSet(
-                    "src", f"data:image/{picture_type};base64,{_base64(path.read_bytes())}"
+                    "src", f"data:image/{picture_type};base64,{base64_of(path.read_bytes())}"
                 )
     return markdown.renderer.render(tokens, markdown.options, {})
 
 
-def _base64(content: bytes) -> str:
+def base64_of(content: bytes) -> str:
     """Return bytes as text in base64."""
     return base64.b64encode(content).decode("ascii")
 
@@ -153,70 +144,13 @@ GIF_TAG = '<img alt="" src="data:image/gif;base64,{}">'
 CONVERTERS = {
     ".md": markdown_as_html,
     ".yaml": lambda content, _: f"<pre>{escape(content.decode('utf-8'))}</pre>",
-    ".mp4": lambda content, _: MP4_TAG.format(_base64(content)),
-    ".gif": lambda content, _: GIF_TAG.format(_base64(content)),
+    ".mp4": lambda content, _: MP4_TAG.format(base64_of(content)),
+    ".gif": lambda content, _: GIF_TAG.format(base64_of(content)),
 }
 """Functions of the content (bytes) and folder of a file that return HTML, by suffix."""
 
 
-# ---------------------------------------------------------------- the report's front page
-
-
-def write_front(
-    input: str | Path,
-    *,
-    figures: Iterable[str | Path],
-    readme: str | Path,
-    output: str | Path,
-    reservation: str = "",
-) -> None:
-    """Write the front page: pictures (.png) with captions, and the claims in `input` (.md).
-
-    The caption of a picture follows it in the `readme` of its study; it is NOT_JUDGED with the
-    `reservation`, if there is one: a sentence why that text is of other data. Raises InputError for
-    a figure without an entry in the catalogue or without a caption.
-    """
-    pictures = [Path(figure) for figure in figures]
-    texts = texts_of_figures(Path(readme).parent, [picture.stem for picture in pictures])
-    if reservation:
-        texts = dict.fromkeys((picture.stem for picture in pictures), NOT_JUDGED + reservation)
-    records = [_figure_record(picture, texts) for picture in pictures]
-    verdicts = markdown_as_html(_with_table_first(Path(input).read_text("utf-8")).encode())
-    variables = {"figures": records, "claims": markup(verdicts)}
-    write_page(output, "page/front.html", ["page/front.css"], **variables)
-
-
-def _with_table_first(text):
-    """Return Markdown with its first table moved up to the title, its first line."""
-    title, *lines = text.splitlines()
-    first = next((k for k, line in enumerate(lines) if line.startswith("|")), 0)
-    rows = list(takewhile(lambda line: line.startswith("|"), lines[first:]))
-    other_lines = lines[:first] + lines[first + len(rows) :]
-    return "\n".join([title, "", *rows, "", *other_lines])
-
-
-def _figure_record(path: Path, texts: dict[str, str]) -> NamedValues:
-    """Return the fields of a picture (.png) in the front page: name, title, picture in base64,
-    alternative text, caption in HTML.
-
-    `texts` has captions, Markdown by figure. Raises InputError as `write_front`.
-    """
-    name = path.stem
-    if name not in FIGURES:
-        raise unknown_name_error("figure", name, FIGURES)
-    if name not in texts:
-        raise InputError("captions", ", ".join(texts), f"have one of {name}")
-    title, text = FIGURES[name].title, texts[name]
-    return {
-        "name": name,
-        "title": title,
-        "picture": _base64(path.read_bytes()),
-        "alt": f"{title}. {' '.join(text.partition('**')[0].split())}",
-        "caption": markup(markdown_as_html(text.encode())),
-    }
-
-
-# ---------------------------------------------------------------- studies
+# ---------------------------------------------------------------- captions
 
 
 def captions(folder: str | Path, figures: Sequence[str]) -> dict[str, str]:
@@ -231,50 +165,12 @@ def texts_of_figures(folder: str | Path, figures: Sequence[str]) -> dict[str, st
     follows each picture in README.md of the study in `folder`, up to the next picture or
     heading."""
     segments = PICTURE_LINK.split(readme(folder))
-    names = _figures_in_readme(segments[1::2], figures)
+    names = figures_in_readme(segments[1::2], figures)
     pairs = zip(names, segments[2::2], strict=True)
     return {name: re.split(r"^#", caption, flags=re.M)[0].strip() for name, caption in pairs}
 
 
-def write_study(
-    folder: str | Path,
-    *,
-    title: str,
-    figures: Sequence[str],
-    output: str | Path,
-    table: str | Path = "",
-    found: str | Path = "",
-    claims: str | Path = "",
-    reservation: str = "",
-) -> None:
-    """Write the page of a study: README.md with the pictures `figures`, further pictures, verdicts
-    (`claims`, .md), results of tasks (`found`, .md), and a table of R (`table`, .csv).
-
-    With a `reservation`, a sentence why the findings of README.md are of other data, the page has
-    that sentence in place of all text after the introduction.
-    """
-    text = readme(folder) or f"# {title}\n"
-    if reservation and readme(folder):
-        introduction = FINDINGS_BEGIN.split(text)[0].rstrip()
-        text = f"{introduction}\n\n## Findings\n\n{NOT_JUDGED}{reservation}\n\n"
-    pictures = {Path(figure).stem: f"![{Path(figure).stem}](<{figure}>)" for figure in figures}
-    text = RELATIVE_LINK.sub(r"\1", text)  # their targets are not beside the page
-    segments = PICTURE_LINK.split(text)
-    segments[1::2] = [
-        pictures.pop(figure, "") for figure in _figures_in_readme(segments[1::2], [*pictures])
-    ]
-    sections = ["".join(segments), *pictures.values()]
-    for path in (claims, found):
-        if path:
-            sections.append(re.sub(r"^#", "##", Path(path).read_text("utf-8"), flags=re.M))
-    if table:
-        sections.append(_ratio_table(Path(table)))
-    body = markup(markdown_as_html("\n\n".join(sections).encode(), Path()))
-    content = {"title": title, "body": body}
-    write_page(output, "page/document.html", ["page/document.css"], **content)
-
-
-def _figures_in_readme(named: Sequence[str], figures: Sequence[str]) -> list[str]:
+def figures_in_readme(named: Sequence[str], figures: Sequence[str]) -> list[str]:
     """Return the figure to show for each picture `named` in a README, from the names of all
     `figures` of the study.
 
@@ -285,23 +181,3 @@ def _figures_in_readme(named: Sequence[str], figures: Sequence[str]) -> list[str
     return [
         figure if figure in figures else unnamed.pop(0) if unnamed else figure for figure in named
     ]
-
-
-def _ratio_table(path: Path) -> str:
-    """Return a section of Markdown with a table of R at all points, at most MAX_TABLE_ROWS of them,
-    from the CSV file at `path`."""
-    import pandas as pd
-
-    table = pd.read_csv(path)
-    columns = [name for name in COLUMNS if name in table and table[name].notna().any()]
-    steady = table.equilibrated.map(STEADY_WORDS)
-    rows = table[columns].assign(steady=steady).head(MAX_TABLE_ROWS).to_numpy().tolist()
-    cells = [
-        [f"{value:.5g}" if isinstance(value, float) else value for value in row] for row in rows
-    ]
-    note = (
-        f"\n{len(table) - MAX_TABLE_ROWS} more rows are in {path.name}.\n"
-        if len(table) > MAX_TABLE_ROWS
-        else ""
-    )
-    return f"## R at every point\n\n{markdown([*columns, 'steady'], cells)}{note}"

@@ -5,7 +5,9 @@ name of a document of the catalogue. All methods raise InputError for unknown na
 settings. Results that are files are their paths.
 """
 
+import json
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from roughgas.base import InputError, files, sorted_json
@@ -16,7 +18,7 @@ from roughgas.results.crate import project_files
 from roughgas.show import catalogue
 from roughgas.workflow.fingerprints import code_beside
 from roughgas.workflow.paths import documents, figure_files, folder_of, with_copy
-from roughgas.workflow.studies import Studies
+from roughgas.workflow.studies import Studies, StudyProducts
 from roughgas.workflow.tasks import Tasks
 
 ARTICLE_FIGURE = "transport_inertia"
@@ -61,7 +63,7 @@ class Products:
     def extensions(self) -> tuple[list[str], list[InputError]]:
         """Return the paths of all products of studies beyond the paper, and the studies' errors.
 
-        Only broken studies have errors.
+        Only broken studies have errors. The page of all verdicts is the last of the products.
         """
         files, refused = [], []
         for products in self.studies.under_heading(BEYOND):
@@ -70,7 +72,36 @@ class Products:
                 files += self.studies.products(products.name)
             except InputError as error:
                 refused.append(error)
-        return files, refused
+        scale = self.studies.configuration.scale
+        return [*files, f"results/{scale}/verdicts.html"], refused
+
+    def judged(self) -> list[StudyProducts]:
+        """Return the paper, and all studies beyond it that have claims and are not broken."""
+        judged = [self.studies.paper]
+        for products in self.studies.under_heading(BEYOND):
+            with suppress(InputError):
+                self.tasks.check(products.name)
+                judged.append(products)
+        return [products for products in judged if products.has("claims.yaml")]
+
+    def all_claims(self, scale: str) -> list[str]:
+        """Return the paths of the verdicts on the statements of all `judged` studies."""
+        return [path for products in self.judged() for path in products.claims(scale, ".json")]
+
+    def judged_studies(self) -> str:
+        """Return the title, the page and the figures of all `judged` studies, JSON by study."""
+        return json.dumps(
+            {
+                products.name: {
+                    "title": products.title,
+                    "page": f"{products.table_folder}page.html"
+                    if products.table_folder
+                    else "report.html",
+                    "shows": products.shown_to_claims,
+                }
+                for products in self.judged()
+            }
+        )
 
     def papers(self, scale: str) -> list[str]:
         """Return the paths of all products of studies of other groups' papers, and their table.

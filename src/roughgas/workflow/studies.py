@@ -8,7 +8,8 @@ its judge; claims.yaml of a study has its statements. All methods raise InputErr
 and illegal settings.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,15 @@ class StudyProducts:
         if self.task_folders:
             self.combined = name if study.modules else f"{name}/data"
 
+    @property
+    def shown_to_claims(self) -> dict[str, list[str]]:
+        """The experiments in each figure, by figure, as claims name them: tasks by the study."""
+        tasks = {TASKS, *self.study.modules}
+        return {
+            figure: [self.name if name in tasks else name for name in names]
+            for figure, names in self.shown.items()
+        }
+
     def has(self, file: str) -> bool:
         """Return whether the folder of the study contains a file of this name."""
         return Path(self.folder, file).exists()
@@ -52,7 +62,12 @@ class StudyProducts:
     @property
     def drawn(self) -> list[str]:
         """The names of the figures that its figure.py draws, or by default of its experiments."""
-        return list(self.figures or self.experiments)
+        return list(self.shown)
+
+    @property
+    def shown(self) -> Mapping[str, Sequence[str]]:
+        """The experiments in each figure, by figure; a figure of an experiment shows only that."""
+        return self.figures or {name: [name] for name in self.experiments}
 
     def tables(self, scale: str) -> dict[str, str]:
         """Return the paths of its tables, by the option of its page.
@@ -325,7 +340,14 @@ class Studies:
 
         Its tables are in `study_folder`.
         """
-        return self.by_table_folder[study_folder].claims(scale, ".md")
+        return self.by_table_folder[study_folder].claims(scale, ".json")
+
+    def page_shows(self, study_folder: str) -> str:
+        """Return the experiments in each figure of a study, JSON by figure, as claims name them.
+
+        Its tables are in `study_folder`.
+        """
+        return json.dumps(self.by_table_folder[study_folder].shown_to_claims)
 
     def page_figures(self, scale: str, study_folder: str) -> list[str]:
         """Return the paths of the pictures on the page of a study.

@@ -12,7 +12,14 @@ from roughgas.base import InputError
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.show.explore import GRID, MAX_SERIES_LENGTH, NUMBERS, experiment, write_page
+from roughgas.show.explore import (
+    GRID,
+    MAX_SERIES_LENGTH,
+    NUMBERS,
+    experiment,
+    time_series,
+    write_page,
+)
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES, write
 
@@ -89,6 +96,15 @@ def test_time_series_are_means_over_blocks(points):
     for name in ("R", "E_trans", "E_rot"):
         expected = seed[f"{name}_series"].values.reshape(-1, 3).mean(1)
         np.testing.assert_allclose(record[name], expected, rtol=6e-5)
+
+
+def test_a_last_block_that_is_shorter_is_left_out(points):
+    seed = read_point(points / "cooling/r1/beta-0.5/seed1.nc")
+    record = time_series(seed, length=SAMPLES // 7)
+    block = record["block"]
+    assert SAMPLES % block > 0 and len(record["R"]) == SAMPLES // block
+    last = seed.R_series.values[: SAMPLES // block * block][-block:]
+    np.testing.assert_allclose(record["R"][-1], last.mean(), rtol=6e-5)
 
 
 def test_an_undecided_verdict_the_size_and_shorter_series(points, tmp_path, monkeypatch):

@@ -1,6 +1,7 @@
 """The report: captions, front page, tables and configurations as HTML."""
 
 import base64
+import json
 import re
 import time
 from html import unescape
@@ -20,7 +21,9 @@ from roughgas.base import all_in_rst, in_rst, in_rst_with_bold
 from roughgas.data.reduced import read_reduced
 from roughgas.results.tables import write_times
 from roughgas.show.catalogue import FIGURES, figures_of
-from roughgas.show.pages import PICTURE_LINK, RELATIVE_LINK, captions
+from roughgas.show.pages import PICTURE_LINK, captions
+from roughgas.show.report import RELATIVE_LINK
+from roughgas.show.verdicts import figures_on, in_symbols
 
 pytestmark = pytest.mark.slow
 
@@ -154,14 +157,42 @@ def test_captions_have_no_comments(tmp_path):
     assert captions(tmp_path, ["mine"])["mine"] == in_rst("0.5(2) %  of <!-- all")
 
 
-TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
-CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
+def claim(name, verdict="holds", ci95=0.0009, experiments=("vibrated",)):
+    """Return a statement as it stands in claims.json."""
+    number = {"label": "largest difference", "value": -0.0512, "ci95": ci95, "text": "-0.0512 (-)"}
+    return {
+        "id": name,
+        "text": f"“R of {name} < 1, at beta = 1”",
+        "criterion": "It is.",
+        "fixed": "before its data",
+        "mark": "",
+        "experiments": list(experiments),
+        "verdict": verdict,
+        "reason": f"Reason of {name}.",
+        "detectable": None,
+        "numbers": [number],
+    }
+
+
+CLAIMS = {
+    "title": "The verdict",
+    "scale": "paper",
+    "reservation": "",
+    "how_to_read": "How to <read> it.",
+    "summary": "Of 2 statements: holds 1, fails 1.",
+    "claims": [
+        claim("first"),
+        claim("second", "fails", ci95=None, experiments=("vibrated", "cooling")),
+    ],
+}
+SHOWS = {"fig1a": ["vibrated"], "fig1b": ["vibrated", "walls"], "fig2a": ["sheared"]}
+SHOWS |= {"fig2b": ["cooling"]}
 
 
 @pytest.fixture
 def files(tmp_path):
     """A folder of pictures and verdicts with known content."""
-    (tmp_path / "claims.md").write_text(CLAIMS)
+    (tmp_path / "claims.json").write_text(json.dumps(CLAIMS))
     for name in NAMES:
         (tmp_path / f"{name}.png").write_bytes(name.encode())
     return tmp_path
@@ -175,8 +206,8 @@ def front(folder, figures=NAMES, captions=NAMES):
     )
     (folder / "README.md").write_text("# The paper\n\n" + "".join(texts))
     options = ["--figures", *(str(folder / f"{name}.png") for name in figures)]
-    options += ["--readme", str(folder / "README.md")]
-    return main(["front", str(folder / "claims.md"), *options, "-o", str(folder / "report.html")])
+    options += ["--shows", json.dumps(SHOWS), "--readme", str(folder / "README.md")]
+    return main(["front", str(folder / "claims.json"), *options, "-o", str(folder / "report.html")])
 
 
 def test_the_front_page_has_figures_with_captions_and_alternative_texts(files):
@@ -186,9 +217,72 @@ def test_the_front_page_has_figures_with_captions_and_alternative_texts(files):
     for name in NAMES:
         positions.append(text.index(base64.b64encode(name.encode()).decode()))
         assert f'alt="{FIGURES[name].title}. What {name} shows."' in unescape(text)
-        assert f"<h2>{FIGURES[name].title}</h2>\n<p>What {name}\nshows.</p>" in text
-    assert positions == sorted(positions) and positions[-1] < text.index("<h1>The verdict</h1>")
+        assert f"<h2>{FIGURES[name].title}</h2>" in text
+        assert f"<p>What {name}\nshows.</p>" in text
+    assert positions == sorted(positions) and positions[-1] < text.index("<h2>The verdict</h2>")
     assert "<strong>What to notice.</strong> x &lt; y." in text
+
+
+def test_verdicts_link_to_figures_and_figures_to_verdicts(files):
+    assert front(files) == 0
+    text = (files / "report.html").read_text("utf-8")
+    rows = text.partition("<tbody>")[2].split("<tr ")[1:]
+    assert [row.partition(">")[0] for row in rows] == [
+        'id="first" data-kind="holds"',
+        'id="second" data-kind="fails"',
+    ]
+    assert "largest difference: −0.05120\u00a0±\u00a00.00090" in rows[0]
+    assert '<a href="#fig1a">Fig. 1a</a>' in rows[0] and "fig2b" not in rows[0]
+    assert '<a href="#fig1a">Fig. 1a</a> <a href="#fig2b">Fig. 2b</a>' in rows[1]
+    assert "largest difference: −0.0512 (-)" in rows[1] and "could have seen: not known" in rows[1]
+    assert "How to &lt;read&gt; it." in text
+    counts = re.findall(r'data-kind="\w*"( disabled)?>([\w ]+)</button>', text)
+    names = ["holds 1", "holds with a qualification 0", "fails 1", "not tested 0"]
+    assert [name for _, name in counts] == ["all 2", *names]
+    assert [name for disabled, name in counts if disabled] == names[1::2]
+    sections = text.split('<section class="figure"')[1:]
+    assert [section.count('href="#first"') for section in sections] == [1, 0, 0, 0]
+
+
+def test_criteria_of_other_data_are_not_said_to_be_fixed(files):
+    (files / "claims.json").write_text(json.dumps(CLAIMS | {"reservation": RESERVED}))
+    assert front(files) == 0
+    text = (files / "report.html").read_text("utf-8")
+    assert "Fixed before" not in text and text.count(RESERVED) == 1 + len(CLAIMS["claims"])
+
+
+def test_all_verdicts_of_several_studies_are_one_table(files, tmp_path):
+    other = CLAIMS | {"claims": [claim("first", experiments=("walls.bed",)), claim("none")]}
+    (tmp_path / "walls.json").write_text(json.dumps(other))
+    paper = {"title": "The paper", "page": "report.html", "shows": SHOWS}
+    walls = {"title": "Walls", "page": "walls/page.html", "shows": {"walls": ["walls.bed"]}}
+    arguments = ["verdicts", str(files / "claims.json"), str(tmp_path / "walls.json")]
+    arguments += ["--studies", json.dumps({"paper": paper, "walls": walls})]
+    assert main([*arguments, "--output", str(tmp_path / "verdicts.html")]) == 0
+    text = (tmp_path / "verdicts.html").read_text("utf-8")
+    names = ["paper.first", "paper.second", "walls.first", "walls.none"]
+    assert re.findall(r'<tr id="([\w.]+)"', text) == names
+    assert re.findall(r'<td><a href="(.*)">(.*)</a> </td>', text) == [
+        ("report.html#fig1a", "The paper"),
+        ("report.html#fig1a", "The paper"),
+        ("walls/page.html#walls", "Walls"),
+        ("walls/page.html", "Walls"),
+    ]
+    assert "4 statements of 2 studies." in text and "holds 3" in text and "fails 1" in text
+
+
+def test_a_figure_that_shows_all_data_of_a_statement_stands_for_the_others():
+    assert figures_on(["vibrated"], SHOWS) == ["fig1a"]
+    assert figures_on(["vibrated", "walls"], SHOWS) == ["fig1b"]
+    assert figures_on(["sheared", "vibrated"], SHOWS) == ["fig2a", "fig1a"]
+    assert figures_on(["dsmc"], SHOWS) == []
+
+
+def test_symbols_of_a_statement_are_html():
+    text = "E_rot < E_trans at beta_p = -1, beta=1/2 and alphabeta-1: -.5"
+    assert in_symbols(text) == (
+        "E<sub>rot</sub> &lt; E<sub>trans</sub> at β<sub>p</sub> = −1, β=1/2 and alphabeta-1: −.5"
+    )
 
 
 def test_a_figure_without_a_caption_or_an_entry_is_refused(files, capsys):
@@ -251,9 +345,9 @@ def study_page(folder, *options):
     """Run the step `study_page` of a study with a picture and verdicts; return its text."""
     (folder / "README.md").write_text(STUDY_README)
     (folder / "mine.png").write_bytes(b"picture")
-    (folder / "claims.md").write_text(CLAIMS)
+    (folder / "claims.json").write_text(json.dumps(CLAIMS))
     arguments = ["study_page", str(folder), "--title", "Friction", *options]
-    arguments += ["--figures", str(folder / "mine.png"), "--claims", str(folder / "claims.md")]
+    arguments += ["--figures", str(folder / "mine.png"), "--claims", str(folder / "claims.json")]
     assert main([*arguments, "--output", str(folder / "page.html")]) == 0
     return (folder / "page.html").read_text("utf-8")
 
@@ -273,7 +367,14 @@ def test_a_page_of_other_data_has_a_question_and_no_findings(tmp_path, monkeypat
 
 def test_the_front_page_of_other_data_has_no_captions(files):
     assert front(files) == 0
-    arguments = ["front", str(files / "claims.md"), f"--reservation={RESERVED}", "--figures"]
+    arguments = [
+        "front",
+        str(files / "claims.json"),
+        "--shows",
+        "{}",
+        f"--reservation={RESERVED}",
+        "--figures",
+    ]
     arguments += [*(str(files / f"{name}.png") for name in NAMES)]
     arguments += ["--readme", str(files / "README.md"), "-o", str(files / "other.html")]
     assert main(arguments) == 0

@@ -39,7 +39,8 @@ def write_living(*, config: str | Path, output: str | Path) -> None:
         "scenes": pages.markup(json.dumps(records)),
         "particles": records["cooling"]["particles"],
     }
-    pages.write_page(output, "living/page.html", ["living/page.css"], [program], **variables)
+    css = ["page/theme.css", "living/page.css"]
+    pages.write_page(output, "living/page.html", css, [program], **variables)
 
 
 def scenes(configuration: Configuration) -> dict[str, NamedValues]:

@@ -4,7 +4,7 @@ const SPINS = [[179, 88, 6], [241, 163, 64], [247, 247, 247], [153, 142, 195], [
 
 function colours() {
   const style = getComputedStyle(document.body);
-  for (const one of ["ink", "soft", "paper", "line", "accent", "second"]) ink[one] = style.getPropertyValue(`--${one}`).trim();
+  for (const one of ["ink", "soft", "paper", "line", "accent", "second", "good"]) ink[one] = style.getPropertyValue(`--${one}`).trim();
 }
 
 function colourOf(spin) {
@@ -82,37 +82,54 @@ function line(context, points, colour, dash = [], width = 1) {
   context.setLineDash([]);
 }
 
+// Entries of the key of the graph: text, colour, dashes and width of its line.
+function keyOf({ scene: { floor } }) {
+  const means = floor ? [["mean over time", ink.ink, [], 3], ["mean over collisions", ink.good, [], 3]] : [["mean", ink.ink, [], 3]];
+  return [["R", ink.accent, [], 1.6], ...means, ["theory", ink.second, [8, 4], 1.8], ["½", ink.soft, [2, 4], 1]];
+}
+
+// Draws the key in as many rows as it needs, and returns its height.
+function drawKey(context, key, font, write) {
+  const length = 1.4 * font, first = 0.5 * font;
+  let x = first, y = font;
+  for (const [text, colour, dash, thick] of key) {
+    const width = length + 0.3 * font + context.measureText(text).width;
+    if (x > first && x + width > context.canvas.width - first) { x = first; y += 1.4 * font; }
+    line(context, [[x, y], [x + length, y]], colour, dash, thick);
+    write(text, x + length + 0.3 * font, y + 0.35 * font, ink.ink);
+    x += width + 0.7 * font;
+  }
+  return y + 0.6 * font;
+}
+
 function drawGraph({ run: { gas, record }, root }) {
   const canvas = root.querySelector(".graph"), context = canvas.getContext("2d");
   const dot = devicePixelRatio, font = dot * Math.max(12, 0.75 * parseFloat(getComputedStyle(document.documentElement).fontSize));
-  const [left, top, right, bottom] = [3.6 * font, 2.2 * font, canvas.width - 0.8 * font, canvas.height - 2.8 * font];
-  const { rows, width, begun } = record, [theory] = prediction(gas), average = record.average();
-  const most = Math.min(1.02, Math.max(0.6, (theory ?? 0) + 0.05, ...rows.map(([R]) => R)));
-  const span = Math.max(rows.length * width, 40 * record.step * (gas.scene.floor ? 20 : 1));
-  const y = R => bottom - (bottom - top) * R / most, x = time => left + (right - left) * time / span;
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  context.font = `${font}px system-ui, sans-serif`;
   const write = (text, X, Y, colour, align = "left") => {
     context.fillStyle = colour;
     context.textAlign = align;
     context.fillText(text, X, Y);
   };
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  context.font = `${font}px system-ui, sans-serif`;
+  const { rows, width, begun } = record, { R: theory } = prediction(gas), average = record.average(), collisional = record.collisional(gas.q);
+  const top = drawKey(context, keyOf(gas), font, write) + 0.6 * font;
+  const [left, right, bottom] = [4.4 * font, canvas.width - 0.8 * font, canvas.height - 2.8 * font];
+  const most = Math.min(1.02, Math.max(0.6, (theory ?? 0) + 0.05, ...rows.map(([R]) => R)));
+  const span = Math.max(rows.length * width, 40 * record.step * (gas.scene.floor ? 20 : 1));
+  const y = R => bottom - (bottom - top) * R / most, x = time => left + (right - left) * time / span;
+  const level = (R, times, ...look) => line(context, times.map(time => [x(time), y(R)]), ...look);
+  const window = average && [average.from - begun, average.end - begun];
   for (const R of [0, 0.25, 0.5, 0.75, 1].filter(one => one <= most)) write(R.toFixed(2), left - 0.5 * font, y(R) + 0.35 * font, ink.soft, "right");
+  write("R", 0.6 * font, (top + bottom) / 2, ink.soft);
   line(context, [[left, top], [left, bottom], [right, bottom]], ink.soft);
-  line(context, [[left, y(0.5)], [right, y(0.5)]], ink.soft, [2, 4]);
+  level(0.5, [0, span], ink.soft, [2, 4]);
   line(context, rows.map(([R], i) => [x((i + 0.5) * width), y(R)]), ink.accent, [], 1.6);
-  if (theory !== null) line(context, [[left, y(theory)], [right, y(theory)]], ink.second, [8, 4], 1.8);
-  if (average) line(context, [average.from, average.end].map(time => [x(time - begun), y(average.mean)]), ink.ink, [], 3);
-  const key = [["R", ink.accent, [], 1.6], ["mean", ink.ink, [], 3], ["theory", ink.second, [8, 4], 1.8], ["½", ink.soft, [2, 4], 1]];
-  const narrow = canvas.width < 24 * font, dashed = narrow ? 0.9 * font : 1.7 * font;
-  let place = narrow ? 0.5 * font : left;
-  for (const [text, colour, dash, thick] of key) {
-    line(context, [[place, font], [place + dashed, font]], colour, dash, thick);
-    write(text, place + dashed + 0.3 * font, 1.35 * font, ink.ink);
-    place += dashed + (narrow ? 0.6 : 1.3) * font + context.measureText(text).width;
-  }
+  if (average) level(average.mean, window, ink.ink, [], 3);
+  if (collisional && gas.scene.floor) level(collisional.mean, window, ink.good, [], 3);
+  if (theory !== null) level(theory, [0, span], ink.second, [8, 4], 1.8);
   const unit = gas.free() ? "collisions per disk" : "time in T";
-  write(narrow ? unit : `${unit}, since the last change`, (left + right) / 2, canvas.height - 0.4 * font, ink.soft, "center");
+  write(canvas.width < 24 * font ? unit : `${unit}, since the last change`, (left + right) / 2, canvas.height - 0.4 * font, ink.soft, "center");
   write("0", left, bottom + 1.15 * font, ink.soft);
   write(Number(span.toPrecision(3)), right, bottom + 1.15 * font, ink.soft, "right");
 }

@@ -10,9 +10,9 @@ const SYMBOLS = { r: "r", beta: "β", q: "q", mu: "μ" };
 const words = text => String(text).replace("-", "−").replace("Infinity", "∞");
 
 function withError(mean, half) {
-  if (!(half > 0)) return half === 0 ? `${mean.toFixed(3)}, exact` : `${mean.toFixed(2)} ± ?`;
+  if (!(half > 0)) return half === 0 ? `${mean.toFixed(3)}, exact` : `${mean.toFixed(2)} ±\u00a0?`;
   const digits = Math.min(4, Math.max(1, 1 - Math.floor(Math.log10(half))));
-  return `${mean.toFixed(digits)} ± ${Math.max(half, 1e-4).toFixed(digits)}`;
+  return `${mean.toFixed(digits)} ±\u00a0${Math.max(half, 1e-4).toFixed(digits)}`;
 }
 
 class Panel {
@@ -53,12 +53,13 @@ class Panel {
   }
 
   tell() {
-    const { gas, record } = this.run, [theory, law] = prediction(gas), average = record.average(), left = this.run.share();
+    const { gas, record } = this.run, { R, law, of } = prediction(gas), average = record.average(), left = this.run.share();
     this.say("present", (record.latest ?? gas.energies().R).toFixed(3));
-    this.say("theory", theory === null ? "none" : theory.toFixed(3));
+    for (const kind of ["time", "collisions"]) this.say(`of-${kind}`, of === kind && R !== null ? R.toFixed(3) : "none");
     this.say("law", law);
     this.say("mean", average ? withError(average.mean, average.half) : "settling");
     this.say("collisional", this.collisional());
+    this.find("row-collisions").hidden = !gas.scene.floor;
     this.say("window", this.window(average));
     this.say("clock", this.run.clock().toFixed(gas.free() ? 1 : 0));
     this.say("energy", left < 1 ? left.toPrecision(2) : left.toFixed(left < 10 ? 1 : 0));
@@ -70,15 +71,13 @@ class Panel {
     if (!average) return "Settling: the mean begins once the gas is steady.";
     const span = [average.from, average.end].map(one => Math.round(one)).join(" to ");
     const error = average.half >= 0 ? "±: 95 % interval" : "error not known yet";
-    return this.run.gas.free() ? `Mean from ${span} collisions per disk; ${error}.` : `Mean over time from ${span} T; ${error}.`;
+    return this.run.gas.free() ? `Mean from ${span} collisions per disk; ${error}.` : `Means from ${span} T; ${error}.`;
   }
 
-  // R averaged over collisions, the average that theory of a driven gas predicts, as text.
+  // R averaged over collisions, the average that theory of a bed predicts, as text.
   collisional() {
-    const { gas, record } = this.run, found = record.collisional(gas.q);
-    if (gas.free()) return "only of a driven gas";
-    if (!found) return record.from === null ? "settling" : "none";
-    return withError(found.mean, found.half) + (gas.scene.shear ? ", with mean flow and spin, unlike theory" : "");
+    const { gas, record } = this.run, average = record.collisional(gas.q);
+    return average ? withError(average.mean, average.half) : record.from === null ? "settling" : "none";
   }
 
   // A remark on the state of the gas, if it needs one.

@@ -18,15 +18,15 @@ function cooling(r, beta, q) {
   return linear > 0 ? 2 * b / (size + 2 * b) : size / (size + b);
 }
 
-// [R or null, name of the theory] for a gas.
+// Theory for a gas: {R or null, law: its name, of: the average of R that it is of, time or collisions}.
 function prediction(gas) {
-  const { r, beta, q, mu } = gas, free = gas.free();
+  const { r, beta, q, mu } = gas, free = gas.free(), overTime = (R, law) => ({ R, law, of: "time" });
   if (beta === -1) {
-    if (gas.w.every(one => one === 0)) return [0, "exact: smooth disks never start to spin"];
-    return free && r < 1 ? [1, "limit: smooth contacts leave spin, take translation"]
-      : [null, "none: no contact changes a spin, R depends on the start"];
+    if (gas.w.every(one => one === 0)) return overTime(0, "exact: smooth disks never start to spin");
+    return free && r < 1 ? overTime(1, "limit: smooth contacts leave spin, take translation")
+      : overTime(null, "none: no contact changes a spin, R depends on the start");
   }
-  const meant = gas.scene.shear ? "without mean flow and mean spin" : "for averages over collisions";
-  if (!free) return [lun(beta, q, r, mu), `${mu < Infinity ? "with friction" : "Lun's formula"}, ${meant}`];
-  return mu < Infinity ? [null, "none here for friction: single disks escape"] : [cooling(r, beta, q), "theory of free cooling"];
+  if (free) return mu < Infinity ? overTime(null, "none here for friction: single disks escape") : overTime(cooling(r, beta, q), "theory of free cooling");
+  const R = lun(beta, q, r, mu), name = mu < Infinity ? "with friction" : "Lun's formula";
+  return gas.scene.shear ? overTime(R, `${name}, without mean flow and mean spin`) : { R, law: `${name}, for averages over collisions`, of: "collisions" };
 }

@@ -5,7 +5,7 @@ const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
 const minus = text => text.replaceAll("-", "−");
 
-let chosen;
+let chosen, averagedOver = "time";
 
 // ---------------------------------------------------------------- the choice
 
@@ -73,9 +73,28 @@ function interval({ R, ci95 }) {
   return minus(`${(R - ci95).toFixed(digits)} to ${(R + ci95).toFixed(digits)}`);
 }
 
-function residual({ R, theory, stderr }) {
+function residual(value, error, theory) {
   if (theory === null) return "no theory here";
-  return withError(R - theory, stderr, R >= theory ? "+" : "");
+  return withError(value - theory, error, value >= theory ? "+" : "");
+}
+
+// Whether R of the experiment is also averaged over collisions.
+const hasCollisional = ({ variants }) => variants.some(({ series }) => series.some(({ points }) =>
+  points.some(({ collisional }) => (collisional ?? null) !== null)));
+
+const overCollisions = () => averagedOver === "collisions" && hasCollisional(chosen.experiment);
+
+// R of a point and its standard error, averaged as chosen.
+const shownR = point => (overCollisions() ? point.collisional ?? null : point.R);
+const shownError = point => (overCollisions() ? point.collisional_stderr : point.stderr) ?? 0;
+
+// Whether theory is of averages over collisions, and the points shown are not.
+const isUnlike = () => hasCollisional(chosen.experiment) && !overCollisions() && chosen.experiment.over_collisions.startsWith("as");
+
+// The average that is shown, in words.
+function average({ over_collisions }) {
+  if (overCollisions()) return `averaged over collisions, ${over_collisions}`;
+  return isUnlike() ? "averaged over time; theory is of averages over collisions" : "averaged over time";
 }
 
 const STEADY = new Map([[true, "found"], [false, "not found"], [null, "not known: too little was measured"]]);
@@ -93,13 +112,16 @@ function sizeOf({ particles, dimension, box, packing }) {
 
 function rows(point) {
   const { theory, over_collisions } = chosen.experiment, collisional = point.collisional ?? null;
+  const time = collisional === null ? "R" : "R over time";
   const found = [
-    [collisional === null ? "R" : "R over time", withError(point.R, point.stderr)],
-    ["standard error", point.stderr?.toPrecision(2) ?? "not known"],
-    ["95 % interval", interval(point)],
     [theoryName(theory), point.theory?.toFixed(4) ?? "none here"],
-    ["R − theory", residual(point)],
-    ...(collisional === null ? [] : [[`R over collisions, ${over_collisions}`, withError(collisional, point.collisional_stderr)]]),
+    ...(collisional === null ? [] : [
+      [`R over collisions, ${over_collisions}`, withError(collisional, point.collisional_stderr)],
+      ["R over collisions − theory", residual(collisional, point.collisional_stderr, point.theory)]]),
+    [time, withError(point.R, point.stderr)],
+    [`${time} − theory`, residual(point.R, point.stderr, point.theory)],
+    [`standard error of ${time}`, point.stderr?.toPrecision(2) ?? "not known"],
+    [`95 % interval of ${time}`, interval(point)],
     ["steady state", STEADY.get(point.steady)],
     ["seeds", String(point.seeds)],
     ["collisions", point.collisions.toLocaleString("en")],
@@ -122,9 +144,10 @@ function level(experiment, variant) {
 function showNumbers() {
   const { experiment, variant, series, point } = chosen;
   const which = experiment.swept ? `, ${parameterOf(experiment)} = ${minus(level(experiment, variant))}` : "";
-  at("title").textContent = `${experiment.description}: ${sizeOf(experiment)}${which}`;
+  at("title").textContent = experiment.description;
+  at("size").textContent = `${sizeOf(experiment)}${which}`;
   at("scene").replaceChildren(pictureOf(experiment));
-  at("theory").textContent = theoryName(experiment.theory);
+  at("averaged").textContent = average(experiment);
   at("point-title").textContent = minus(`r = ${series.r}, β = ${point.beta}`);
   at("numbers").replaceChildren(...rows(point).map(([name, value]) => {
     const row = document.createElement("tr"), head = document.createElement("th");
@@ -147,6 +170,7 @@ function fill(id, list, label, present) {
 function showSelects() {
   const { experiment, variant, series, point } = chosen;
   at("variant-label").hidden = experiment.swept === null;
+  at("mean-label").hidden = !hasCollisional(experiment);
   at("over-label").hidden = experiment.variants.length < 2;
   at("variant-name").textContent = experiment.swept ? parameterOf(experiment) : "";
   fill("experiment", DATA.experiments, one => one.description, experiment);
@@ -180,6 +204,10 @@ listen("beta", choice => choice.series.points, "point");
 for (const button of document.querySelectorAll("button[data-copies]")) button.addEventListener("click", copy);
 at("over").addEventListener("change", event => {
   over = ["beta", "third"][event.target.selectedIndex];
+  choose(chosen);
+});
+at("mean").addEventListener("change", event => {
+  averagedOver = event.target.value;
   choose(chosen);
 });
 addEventListener("hashchange", chooseByHash);

@@ -24,6 +24,8 @@ function tick(value) {
   return `10${String(exponent).replace(/./g, one => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)])}`;
 }
 
+const borderOf = dash => (!dash?.[0] ? "solid" : dash[0] < 4 ? "dotted" : "dashed");
+
 // Powers of ten as ticks, thinned out to fit the axis.
 function decades(u, _, low, high) {
   const [first, last] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))], step = Math.ceil((last - first) / 5) || 1;
@@ -37,7 +39,7 @@ function plot(id, { height, x, y, series, data, hooks, legend = false, sync, sam
   const axis = more => ({ stroke: tone("ink"), font: FONT, labelFont: FONT, grid: { stroke: tone("grid"), width: 1 }, labelSize: 22,
     ticks: { stroke: tone("ink"), width: 1, size: 5 }, values: (u, splits) => splits.map(tick), ...more });
   PLOTS[id] = new uPlot({
-    width: at(id).clientWidth, height, series, hooks, padding: [8, 12, 0, 0], legend: { show: legend },
+    width: at(id).clientWidth, height, series, hooks, padding: [8, 12, 0, 0], legend: { show: legend, markers: { dash: (u, index) => borderOf(u.series[index].dash) } },
     scales: { x: { time: false, ...x.scale }, y: y.scale ?? {} }, axes: [axis({ size: 30, ...x.axis }), axis({ size: 62, ...y.axis })],
     cursor: { sync: { key: sync, scales: ["x", null] }, drag: { x: true, y: true, uni: 40 }, points: { show: legend } },
   }, data, at(id));
@@ -75,7 +77,7 @@ function drawnRows() {
   });
 }
 
-const difference = point => (point.theory === null ? null : point.R - point.theory);
+const difference = point => (point.theory === null || shownR(point) === null ? null : shownR(point) - point.theory);
 
 function mark({ ctx }, { symbol }, x, y, size) {
   ctx.beginPath();
@@ -113,7 +115,7 @@ function drawPoints(u, rows, valueOf) {
       const value = valueOf(point), at = one => u.valToPos(one, "y", true);
       if (value === null) continue;
       const size = Math.max(5 - 0.7 * index, 3);
-      drawPoint(u, lookOf(index), size, u.valToPos(x, "x", true), at(value), at(value) - at(value + (point.stderr ?? 0)), point);
+      drawPoint(u, lookOf(index), size, u.valToPos(x, "x", true), at(value), at(value) - at(value + shownError(point)), point);
     }
   });
   u.ctx.restore();
@@ -134,7 +136,8 @@ function listenTo(u, rows, valueOf) {
     tip.hidden = !place;
     if (!place) return;
     const { series, point } = place.choice;
-    tip.textContent = `r = ${series.r}, β = ${minus(point.beta)}\nR = ${withError(point.R, point.stderr)}\nR − theory = ${residual(point)}`;
+    tip.textContent = `r = ${series.r}, β = ${minus(point.beta)}\nR = ${withError(shownR(point), shownError(point))}\n`
+      + `R − theory = ${residual(shownR(point), shownError(point), point.theory)}`;
     Object.assign(tip.style, { left: `${Math.min(event.offsetX + 14, u.over.clientWidth - 180)}px`, top: `${event.offsetY + 14}px` });
   });
   u.over.addEventListener("mouseleave", () => { tip.hidden = true; });
@@ -162,6 +165,14 @@ function padded(values, wide) {
   return (u, low, high) => (low > first || high < last ? [low, high] : all);
 }
 
+// An entry of the legend: a sign in its colour, or without one a line, and its meaning.
+function entry(sign, colour, meaning) {
+  const name = document.createElement("span"), shown = name.appendChild(document.createElement("span"));
+  Object.assign(shown, { textContent: sign, className: sign ? "sign" : "line", ariaHidden: "true" }).style.color = colour;
+  name.append(sign ? ` ${meaning}` : meaning);
+  return name;
+}
+
 function drawRatios() {
   const rows = drawnRows(), { label, scale, axis } = horizontal(rows), { theory } = chosen.experiment;
   const one = rows.every(row => String(row.curve[1]) === String(rows[0].curve[1]));
@@ -169,9 +180,9 @@ function drawRatios() {
   const column = pairs => { const known = new Map(pairs); return xs.map(x => known.get(x) ?? null); };
   // invisible series: they make axes include the error bars
   const bounds = valueOf => rows.flatMap(row => [-1, 1].map(sign => column(row.places.map(({ x, choice: { point } }) =>
-    [x, valueOf(point) === null ? null : valueOf(point) + sign * (point.stderr ?? 0)]))));
+    [x, valueOf(point) === null ? null : valueOf(point) + sign * shownError(point)]))));
   const hidden = data => data.map(() => ({ paths: () => null, points: { show: false } }));
-  const same = `${chosen.experiment.name} ${over} ${over === "beta" ? chosen.variant.name : chosen.series.r}`;
+  const same = `${chosen.experiment.name} ${over} ${over === "beta" ? chosen.variant.name : chosen.series.r} ${overCollisions()}`;
   const curve = (stroke, dash) => ({ stroke, dash, width: 1.3, spanGaps: true, pxAlign: 0, points: { show: false } });
   const draws = (id, valueOf, lines, more) => {
     const ranges = bounds(valueOf);
@@ -183,14 +194,10 @@ function drawRatios() {
     ...(one ? curve(tone("ink")) : curve(lookOf(index).colour, lookOf(index).dash)),
     data: column(row.curve[0].map((x, k) => [x, row.curve[1][k]])) }));
   const zero = { ...curve(tone("ink")), width: 1, data: xs.map(() => 0) };
-  draws("ratios", point => point.R, curves, { height: 340, x: { scale, axis: { ...axis, values: () => [] , size: 12 } }, y: { axis: { label: "R" } } });
+  draws("ratios", shownR, curves, { height: 340, x: { scale, axis: { ...axis, values: () => [] , size: 12 } }, y: { axis: { label: "R" } } });
   draws("residuals", difference, [zero], { height: 190, x: { scale, axis: { ...axis, label } }, y: { axis: { label: "R − theory" } } });
-  at("legend").replaceChildren(...rows.map((row, index) => {
-    const name = document.createElement("span");
-    name.textContent = `${SIGNS[lookOf(index).symbol]} ${row.label}`;
-    name.style.color = lookOf(index).colour;
-    return name;
-  }), `${one ? "line" : "lines"}: ${theoryName(theory)}`);
+  at("legend").replaceChildren(...rows.map((row, index) => entry(SIGNS[lookOf(index).symbol], lookOf(index).colour, row.label)),
+    entry(one ? "" : "lines:", tone("ink"), theoryName(theory) + (isUnlike() ? ", of averages over collisions" : "")));
 }
 
 // ---------------------------------------------------------------- R over time
@@ -206,20 +213,20 @@ function drawOverTime() {
     u.ctx.fillStyle = tone("window");
     if (right > left) u.ctx.fillRect(left, top, right - left, height);
   };
-  const mean = { ...line("R of all seeds", 0), stroke: tone("soft"), dash: [2, 3] };
+  const mean = { ...line("mean R of all seeds", 0), stroke: tone("soft"), dash: [2, 3] };
   const shared = { legend: true, sync: "over-time", same, hooks: { drawClear: [shade] } }, label = CLOCKS[series.clock];
   const clock = { label, value: (u, value) => (value === null || value === undefined ? "" : value.toPrecision(4)) };
   plot("over-time", { ...shared, height: 190, x: {}, y: { axis: { label: "R" } }, data: [series.at, series.R, series.at.map(() => R)],
-    series: [clock, line("R", 0), mean] });
+    series: [clock, line("R of seed 1", 0), mean] });
   const energies = [series.E_trans, series.E_rot].map(values => values.map(one => (cooling && !(one > 0) ? null : one)));
   const many = Math.max(...energies[0]) > 1e5 * Math.min(...energies[0].filter(one => one !== null));
   plot("energies", { ...shared, height: 200, x: { axis: { label } }, data: [series.at, ...energies],
     y: { scale: cooling ? { distr: 3 } : { range: (u, low, high) => [Math.min(low, 0), 1.05 * high || 1] },
-      axis: { label: "energy", ...(cooling && many ? { splits: decades, filter: (u, splits) => splits } : {}) } },
-    series: [clock, line("E_trans", 1), line("E_rot", 2)] });
+      axis: { label: `energy / ${cooling ? "initial E_trans" : "(m a²/T²)"}`, ...(cooling && many ? { splits: decades, filter: (u, splits) => splits } : {}) } },
+    series: [clock, line("translation, E_trans", 1), line("rotation, E_rot", 2)] });
   const block = series.block > 1 ? `Each value is the mean over a block of ${series.block} samples.`
     : "Every sample is shown.";
   const units = cooling ? "in units of the initial E_trans" : "in m a²/T²";
-  at("thinned").textContent = `Seed 1. ${block} Shaded: where R is measured; dotted: R of all seeds. `
+  at("thinned").textContent = `Seed 1. ${block} Shaded: where R is measured; dotted: mean R of all seeds. `
     + `Energies are per particle and degree of freedom, ${units}.`;
 }
