@@ -66,7 +66,8 @@ def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
     beneath[0].set_ylabel(r"$R$ of a species")
     above[0].legend(handles=_keys_of_beta(second_species), loc="best")
     cooling = columns[0].data.attrs["theory"] == "K"
-    figure.legend(handles=_keys_of_species(theories, cooling), loc="outside lower center", ncols=2)
+    keys = _keys_of_species(theories, cooling)
+    figure.legend(handles=keys, loc="outside lower center", ncols=2)
     figure.align_ylabels()
     return figure
 
@@ -152,6 +153,7 @@ def _keys_of_species(theories: str, cooling: bool) -> list:
         (LARGE_MARKER, _pale_colour(THEORY), "2: heavy or large"),
     )
     keys = [key(colour, name, "o", ms=size) for size, colour, name in looks]
+    keys.append(key(FAINT, "equipartition", "", plotting.DOTS))
     for number, line, dash, side in zip((1, 2), LINES, DASHES, ("left", "right"), strict=True):
         label = f"{theories}, {number}"
         if cooling:

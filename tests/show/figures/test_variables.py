@@ -77,9 +77,7 @@ def test_untrusted_errors_are_paler_and_explained():
     (axes,) = variables.draw(observed_sweep(trusted=-1.0), ["fast"]).axes
     assert len(axes.containers) == 4
     (legend,) = axes.figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "paler bars or bands: not trusted"
-    ]
+    assert [text.get_text() for text in legend.get_texts()] == ["paler bars or bands: not trusted"]
 
 
 def test_the_legend_says_what_each_theory_is():
@@ -89,13 +87,14 @@ def test_the_legend_says_what_each_theory_is():
     theories = {name: data[name] for name in names[1:]}
     figure = variables.draw(data, names, None, theories)
     (legend,) = figure.legends
-    keys = {text.get_text(): key for text, key in zip(legend.get_texts(), legend.get_lines())}
+    texts = [text.get_text() for text in legend.get_texts()]
+    keys = dict(zip(texts, legend.get_lines(), strict=True))
     dashes, dots, line = "theory of fast and squares", "theory of profile", "$R$ of Lun's formula"
     assert list(keys) == [dashes, dots, line]
     assert keys[dashes].get_marker() == "_" and keys[dots].get_linestyle() == ":"
     assert keys[line].get_linestyle() == "-"
     _, fast, _, profile = figure.axes
-    (drawn,) = [line for line in fast.get_lines() if line.get_marker() == "_"][:1]
+    drawn = next(line for line in fast.get_lines() if line.get_marker() == "_")
     np.testing.assert_allclose(drawn.get_ydata(), [0.05, 0.1, 0.15])
     assert ":" in {line.get_linestyle() for line in profile.get_lines()}
 

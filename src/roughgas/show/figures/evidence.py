@@ -54,7 +54,9 @@ def _panel(axes: Axes, rows: Sequence[tuple[str, Row]]) -> None:
         for members in rows_by_source.values()
     ]
     colours = [style.colour for style in LINE_STYLES[: len(samples)]]
-    medians = [round(np.median([row.t for row in members]), 1) for members in rows_by_source.values()]
+    medians = [
+        round(np.median([row.t for row in members]), 1) for members in rows_by_source.values()
+    ]
     labels = [
         f"{name}: {len(members)}, {median or 0.0:+.1f}".replace("-", MINUS)
         for (name, members), median in zip(rows_by_source.items(), medians, strict=True)

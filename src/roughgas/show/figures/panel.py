@@ -460,9 +460,15 @@ def key_of_trust() -> Line2D:
     return key(GREY, "paler: the error is not trusted", "o", **NOT_TRUSTED)
 
 
-def add_title(main: Axes, datasets: Sequence[xr.Dataset], subject: str, message: str = "") -> None:
+def add_title(
+    main: Axes,
+    datasets: Sequence[xr.Dataset],
+    subject: str,
+    message: str = "",
+    errors_as: str = "Bars",
+) -> None:
     """Write a title above the axes `main`: the subject, the number of particles and the meaning of
-    error bars of `datasets` (reduced), and the message above it."""
+    the errors of `datasets` (reduced), drawn as bars or bands, and the message above it."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
@@ -470,7 +476,7 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], subject: str, message:
     attributes = datasets[0].attrs
     scale = "" if attributes["scale"] == "paper" else f"\nScale: {attributes['scale']}"
     number = particles_of(datasets[0]).replace(" to ", "$ to $")
-    text = f"{subject}, $N = {number}$\nBars: {bars}{scale}"
+    text = f"{subject}, $N = {number}$\n{errors_as}: {bars}{scale}"
     main.set_title(text, fontsize=7.5, loc="left")
     if message:
         coordinates: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}

@@ -45,7 +45,7 @@ COMPONENT_STYLES = (
 )
 """Markers and lines of the components of a variable, which have the colour of their series; a
 variable with more components is drawn in part."""
-ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
+ROW_HEIGHT, TITLE_HEIGHT = 1.75, 0.75  # inches: MAX_ROWS fit on a page
 LETTERS_PER_INCH = 13  # of the title
 
 
