@@ -111,9 +111,7 @@ def _by_trust(row, name):
 
 def _legend_keys(drawn, gas):
     """Return the legend's keys of colours and symbols."""
-    keys = [
-        key(series.line_style.colour, series.label, series.line_style.marker) for series in drawn
-    ]
+    keys = [key(look.colour, label, look.marker, look.line) for label, look, *_ in drawn]
     keys += [key(GREY, label, marker, mfc="none") for marker, label in METHODS.values()]
     keys.append(key(GREY, "theory: see below", "", "-"))
     if not all(trusted(gas, name).all() for name in CUMULANTS):

@@ -64,8 +64,8 @@ def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
         _finish(upper, lower, column)
     above[0].set_ylabel(r"$T_2/T_1$, translational")
     beneath[0].set_ylabel(r"$R$ of a species")
-    above[0].legend(handles=_keys_of_beta(second_species), loc="best")
     cooling = columns[0].data.attrs["theory"] == "K"
+    above[0].legend(handles=_keys_of_beta(second_species, cooling), loc="best")
     keys = _keys_of_species(theories, cooling)
     figure.legend(handles=keys, loc="outside lower center", ncols=2)
     figure.align_ylabels()
@@ -139,10 +139,14 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     plotting.add_title(upper, [column.data], title, column.message)
 
 
-def _keys_of_beta(drawn: Sequence[plotting.Series]) -> list:
-    """Return the keys of colours, and of open symbols if there are any."""
+def _keys_of_beta(drawn: Sequence[plotting.Series], cooling: bool) -> list:
+    """Return the keys of colours, with lines of theory if it is known at any ratio, and of open
+    symbols if there are any."""
     looks = {float(series.data.beta): series.line_style for series in drawn}
-    keys = [key(look.colour, rf"$\beta = {beta:g}$", look.marker) for beta, look in looks.items()]
+    keys = [
+        key(look.colour, rf"$\beta = {beta:g}$", look.marker, look.line if cooling else "none")
+        for beta, look in looks.items()
+    ]
     return keys + plotting.keys_of_steadiness(drawn)
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 
 from roughgas.plotting import FAINT, LINE_STYLES, TWO_WIDE, judged_title
 
@@ -73,6 +74,7 @@ def draw(layers: xr.Dataset, large: xr.Dataset) -> Figure:
 def _draw_over_time(subfigure: SubFigure, layers: xr.Dataset) -> None:
     """Draw the mean height of each layer over four cycles, and correlations of heights."""
     shown = {panel.case: layer for panel, layer in layers_of_panels(layers)}
+    handles: list[Line2D] = []
     over, apart = subfigure.subplots(1, 2)
     for axes in (over, apart):
         axes.tick_params(labelsize=7)
@@ -83,19 +85,23 @@ def _draw_over_time(subfigure: SubFigure, layers: xr.Dataset) -> None:
                 "-" if number < len(LINE_STYLES) else "--",
             )
             style: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line}
-            style["label"] = f"{case}: " + ", ".join(f"{length:.2f}" for length in flights(gamma))
             draw_height(over, shown[case], style)
-            _draw_correlation(apart, shown[case], style | {"marker": look.marker, "ms": 3})
+            style |= {"marker": look.marker, "ms": 3}
+            _draw_correlation(apart, shown[case], style)
+            label = f"{case}: " + ", ".join(f"{length:.2f}" for length in flights(gamma))
+            handles.append(Line2D([], [], label=label, **style))
     over.set_ylim(0.0, 1.75 * over.get_ylim()[1])
     title = "panel: flights of a ball that does not bounce, in cycles"
     keys: dict[str, Any] = {
         "fontsize": SMALL_FONT,
         "title_fontsize": SMALL_FONT,
-        "handlelength": 1.5,
+        "handlelength": 1.7,
     }
-    over.legend(**keys, title=title, ncols=3, loc="upper center", columnspacing=1.0)
+    over.legend(
+        handles=handles, **keys, title=title, ncols=3, loc="upper center", columnspacing=1.0
+    )
     size = f"{side(next(iter(shown.values()))):g} D"
-    for axes, quantity in ((over, "mean height"), (apart, "correlation, colours as left")):
+    for axes, quantity in ((over, "mean height"), (apart, "correlation, symbols as left")):
         axes.set_title(f"{quantity}, boxes of {size}", fontsize=8, loc="left")
 
 

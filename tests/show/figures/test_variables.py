@@ -49,7 +49,7 @@ def test_values_and_their_errors_are_drawn():
         np.testing.assert_allclose(drawn, expected)
         segments = axes.containers[0][2][0].get_segments()
         np.testing.assert_allclose(np.diff(segments, axis=1)[:, 0, 1], 0.02)
-    assert labels(squares) == [f"$r = {r}$, {side}" for r in (0.8, 0.9) for side in "xy"]
+    assert labels(squares) == ["$r = 0.8$", "$r = 0.9$", "x", "y"]
     lines = [line.get_ydata() for line in profile.get_lines()]
     np.testing.assert_allclose(lines, np.outer([0.05, 0.1, 0.15], [0.0, 1.0, 4.0, 9.0]))
     assert labels(profile) == [rf"$\beta = {beta}$" for beta in ("-0.5", "0", "0.5")]

@@ -363,10 +363,10 @@ def frame_rows(panel: Panel, drawn: Sequence[Series], rows: Sequence[Row]) -> No
             for side, outside in (("above", residuals > high), ("below", residuals < low))
             if outside.any()
         ]
-        residual.set_title("\n".join(notes), fontsize=7, color=GREY, loc="right", pad=2)
+        residual.set_title("\n".join(notes), fontsize=7, color=GREY, loc="right", pad=5)
         words = [AVERAGES[row.average]] if len({average for average, _ in rows}) > 1 else []
         words += ["finer scale"] if heights[-1] < 0.8 * heights[0] else []
-        residual.set_title(", ".join(words), fontsize=7.5, loc="left", pad=2)
+        residual.set_title(", ".join(words), fontsize=7.5, loc="left", pad=5)
 
 
 def _residual_limits(residuals, scale, average) -> tuple[float, float]:

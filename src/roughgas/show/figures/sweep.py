@@ -28,7 +28,7 @@ from roughgas.statistics.errors import block_means
 from roughgas.statistics.estimates import Estimate
 from roughgas.theory.prediction import equation_of
 
-MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 3
+MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 2  # panels that fit on a page
 AXES = {axis.name: axis for axis in (panel.BETA, panel.FRICTION, panel.INERTIA, panel.ROUGHNESS)}
 LABELS = {
     "r": "normal restitution $r$",
@@ -72,16 +72,17 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     numeric, axis = with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections = [{layout.panels: value} if layout.panels else {} for value in panels]
-    width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
+    is_single = len(panels) == 1
     if "R" not in data:
+        width = WIDTH if is_single else TWO_WIDE
         return _energy_figure(numeric, layout, axis, selections, width)
     contents = [
         _panel_content(numeric, layout, axis, selection, selection is selections[-1])
         for selection in selections
     ]
     contents[0] = contents[0]._replace(message=message_of(numeric, "R", layout.over))
-    rows = panel.rows_of(numeric)
-    return panel.ratio_figure(*contents, width=width + LEGEND_WIDTH, rows=rows)
+    width = WIDTH + LEGEND_WIDTH if is_single else TWO_WIDE
+    return panel.ratio_figure(*contents, width=width, rows=panel.rows_of(numeric))
 
 
 def layout_of(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]) -> Layout:

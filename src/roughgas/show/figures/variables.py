@@ -107,8 +107,7 @@ def draw(
     numeric, axis = sweep.with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections: list[Record] = [{layout.panels: value} if layout.panels else {} for value in panels]
-    one_wide = WIDTH + sweep.LEGEND_WIDTH
-    width = one_wide if len(panels) == 1 else max(TWO_WIDE, 0.5 * TWO_WIDE * len(panels))
+    width = WIDTH + sweep.LEGEND_WIDTH if len(panels) == 1 else TWO_WIDE
     size = width, TITLE_HEIGHT + ROW_HEIGHT * len(names)
     beside_legends = 0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=beside_legends))
@@ -177,9 +176,10 @@ def _draw_over(
 ) -> None:
     """Draw a variable with error bars over an axis of the sweep, at the `selection` of a panel.
 
-    R is drawn with the lines of theory.
+    R is drawn with the lines of theory. Components have the colour of their series, and a key each.
     """
     axis.prepare(axes)
+    components: dict[str, str] = {}
     for value, style in zip(layout.values[layout.series], LINE_STYLES, strict=False):
         label = sweep.label_of(layout.series, value)
         row = data.sel({layout.series: value, **selection})
@@ -192,8 +192,13 @@ def _draw_over(
             panel.draw_theory(panel.Panel(axes, (), axis), [curve])
         for line, error, trusted, text, inner in _lines(row, name, layout.over):
             marked = style._replace(marker=inner.marker) if text else style
-            text = ", ".join(filter(None, (label, text)))
-            _draw_bars(axes, row[layout.over].values, line, error, trusted, marked, text)
+            components |= {text: inner.marker} if text else {}
+            name_of_bars = "" if text else label
+            _draw_bars(axes, row[layout.over].values, line, error, trusted, marked, name_of_bars)
+        if components:
+            axes.plot([], [], color=style.colour, lw=4, label=label)
+    for text, marker in components.items():
+        axes.plot([], [], marker, color=GREY, ms=3.6, label=text)
 
 
 def _draw_bars(axes: Axes, x, values, errors, trusted, style: LineStyle, label: str) -> None:
