@@ -51,6 +51,7 @@ def draw(gas: xr.Dataset) -> Figure:
                 _draw_ratio(right, gas_at_point, look._replace(marker=marker))
     for r, marker in zip(sorted(gas.r.values, reverse=True), MARKERS, strict=False):
         keys.append(key(GREY, f"$r = {r:g}$ at first", marker))
+    keys.append(key(FAINT, "power laws", "", "--"))
     _draw_powers(left)
     if later:
         text = f"{later} points beyond\n$10^{{{np.log10(LATEST_TIME):.0f}}}\\,T$ are not drawn"
@@ -64,7 +65,7 @@ def draw(gas: xr.Dataset) -> Figure:
         message = judged_title(__file__, statement, [gas], drawn)
         axes.set_title(message, fontsize=8.5, fontweight="bold", loc="left")
     figure.suptitle(f"Viscoelastic disks that cool, $N = {particles_of(gas)}$", fontsize=8)
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
+    figure.legend(handles=keys, loc="outside lower center", ncols=(len(keys) + 1) // 2)
     return figure
 
 

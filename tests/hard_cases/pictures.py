@@ -59,7 +59,7 @@ def overview(margins: list[Margin]) -> Figure:
     axes.set_xlabel(
         "margin: limit over measured number, or its inverse; 1: at the limit", fontsize=9
     )
-    note = "a symbol a measured number; right: how many lie beyond the axis, or are exact"
+    note = "a symbol: a measured number; right: how many lie beyond the axis, or are exact"
     axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=5)
     return figure
 

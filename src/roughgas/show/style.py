@@ -130,8 +130,9 @@ def _save_with_palette(figure: Figure, path: Path) -> None:
     for key, text in METADATA[".png"].items():
         texts.add_text(key, text)
     with Image.open(full) as drawn:
-        # dithering would blur letters
-        picture = drawn.convert("RGB").quantize(PALETTE_SIZE, dither=Image.Dither.NONE)
+        # rare colours stay as they are, and dithering would blur letters
+        how: dict[str, Any] = {"method": Image.Quantize.MAXCOVERAGE, "kmeans": 2}
+        picture = drawn.convert("RGB").quantize(PALETTE_SIZE, dither=Image.Dither.NONE, **how)
         picture.save(path, "png", optimize=True, pnginfo=texts, dpi=drawn.info["dpi"])
 
 
