@@ -34,7 +34,7 @@ from .published import (
     side,
     wavelength,
 )
-from .seen import clearest, seen
+from .seen import clearest, pictured, seen
 
 PICTURE, CAPTION = 6.6, 1.05  # inches: sum of the widths of a row's pictures, height of texts
 LETTERS_PER_INCH, NO_BREAK = 18, "\N{NO-BREAK SPACE}"
@@ -143,8 +143,7 @@ def _draw_picture(axes: Axes, panel: Panel, layer: xr.Dataset) -> None:
     there above, and what is published below."""
     axes.set(xticks=[], yticks=[])
     axes.set_title(f"({panel.panel}) {seen(panel, layer)}", fontsize=7.5, loc="left")
-    best = clearest(layer)
-    heights = layer.mean_height[(best + (panel.panel == "d")) % CYCLES].values.T
+    heights = pictured(panel, layer).T
     low, high = np.percentile(heights, GREYS)
     axes.imshow(heights, vmin=low, vmax=high, **GREY_SCALE)
     texts = (

@@ -129,10 +129,12 @@ RIGHT, SIXTH = np.pi / 2, np.pi / 3
 DOMAINS = np.where(np.arange(100)[:, np.newaxis] < 50, directions(0.0), directions(RIGHT))
 SEEN = {
     "straight stripes": (directions(0.3), (0.9, 0.1, 0.1)),
-    "domains of stripes": (DOMAINS, (0.3, 0.5, 0.1)),
+    "bent stripes": (DOMAINS, (0.3, 0.3, 0.1)),
     "squares": (directions(0.0, RIGHT), (0.1, 0.8, 0.2)),
     "hexagons": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.1, 0.5)),
-    "cells without order": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "hills without order": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "hollows without order": (-directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "no order": (directions(0.0, 0.7, 1.1, 1.9, 2.9), (0.1, 0.2, 0.3)),
 }
 
 
