@@ -28,7 +28,7 @@ def seen(panel: Panel, layer: xr.Dataset) -> str:
     deviations = pictured(panel, layer) - np.mean(pictured(panel, layer))
     skewness, kurtosis = (np.mean(deviations**n) / np.std(deviations) ** n for n in (3, 4))
     if abs(skewness) > SKEWED:
-        return f"{'hills' if skewness > 0.0 else 'hollows'} without order"
+        return "separate hills" if skewness > 0.0 else "separate hollows"
     return "bent stripes" if kurtosis < STRIPED else "no order"
 
 

@@ -132,8 +132,8 @@ SEEN = {
     "bent stripes": (DOMAINS, (0.3, 0.3, 0.1)),
     "squares": (directions(0.0, RIGHT), (0.1, 0.8, 0.2)),
     "hexagons": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.1, 0.5)),
-    "hills without order": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
-    "hollows without order": (-directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "separate hills": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "separate hollows": (-directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
     "no order": (directions(0.0, 0.7, 1.1, 1.9, 2.9), (0.1, 0.2, 0.3)),
 }
 
