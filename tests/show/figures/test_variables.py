@@ -89,7 +89,8 @@ def test_the_legend_says_what_each_theory_is():
     (legend,) = figure.legends
     texts = [text.get_text() for text in legend.get_texts()]
     keys = dict(zip(texts, legend.get_lines(), strict=True))
-    dashes, dots, line = "theory of fast and squares", "theory of profile", "$R$ of Lun's formula"
+    dashes, dots = "dashes: theory of fast and squares", "dots: theory of profile"
+    line = "lines: $R$ of Lun's formula"
     assert list(keys) == [dashes, dots, line]
     assert keys[dashes].get_marker() == "_" and keys[dots].get_linestyle() == ":"
     assert keys[line].get_linestyle() == "-"

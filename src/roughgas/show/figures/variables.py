@@ -139,14 +139,14 @@ def _keys_of_theory(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
     known = [name for name in names if name + THEORY in data]
     along = [name for name in known if _coordinate(data, name)]
     over = [name for name in known if name not in along]
-    styles = ((over, BESIDE_POINTS), (along, BENEATH_LINES))
+    styles = (("dashes", over, BESIDE_POINTS), ("dots", along, BENEATH_LINES))
     keys = [
-        Line2D([], [], color=GREY, label=f"theory of {_listed(group)}", **style)
-        for group, style in styles
+        Line2D([], [], color=GREY, label=f"{mark}: theory of {_listed(group)}", **style)
+        for mark, group, style in styles
         if group
     ]
     if "R" in names and "R" not in known and _has_theory(data):
-        keys.append(panel.key(GREY, f"$R$ of {equation_of(data.attrs).name}", "", "-"))
+        keys.append(panel.key(GREY, f"lines: $R$ of {equation_of(data.attrs).name}", "", "-"))
     return keys
 
 
