@@ -99,6 +99,7 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "impact_roughness.disks": {"roughness_law.exponent": ["1"]},
     "thermal_floor.bed": {"thermal_floor.temperature": ["5"], "r": ["1"]},
     "patterns.layers": {"seeds": 1},  # of seven cases
+    "patterns.large": {"seeds": 1},  # of two
     "transport.strained": {"shear.velocity": ["0.4"]},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
@@ -120,11 +121,12 @@ for name, box in (
     TINY[name] |= {"particles": 10, "box": box, "packing": None}
 for name in (name for name in BEYOND if name.startswith("mpemba.")):
     TINY[name] |= {"particles": 20, "schedule": {"sample_every": 40}}
-TINY["patterns.layers"] |= {
-    "particles": 40,
-    "layer": {"width": 4, "cycles": {"equilibrate": 0, "measure": 4}},
-    "observables": {"pattern": {"cells": 4}},
-}
+for name in ("patterns.layers", "patterns.large"):
+    TINY[name] |= {
+        "particles": 40,
+        "layer": {"width": 4, "cycles": {"equilibrate": 0, "measure": 4}},
+        "observables": {"pattern": {"cells": 4}},
+    }
 for name in BEYOND:
     if "fluxes" in name or name.endswith(("strained", "between_walls", "far_walls")):
         TINY[name]["schedule"] = {"equilibrate": 100, "measure": 1000, "sample_every": 10}

@@ -86,7 +86,7 @@ def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
         axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
         position: Style = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
         axes.annotate(f"{100 * accuracy:g} %", **position, **offset, **grey)
-    title = "slope: longer runs (filled), more seeds (open)"
+    title = "slope: longer runs (filled, full lines),\nmore seeds (open, dashed)"
     axes.legend(loc="lower left", title=title, alignment="left")
 
 
@@ -103,7 +103,8 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
         axes.errorbar(x, y, bar, label=label, zorder=3, **colours, **size, **THIN)
     seconds = data.event_driven_seconds.values
     fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
-    axes.plot(seconds, fit, color=LINE_STYLES[0].colour, linewidth=0.8, zorder=1)
+    label = "event-driven, fitted power law"
+    axes.plot(seconds, fit, color=LINE_STYLES[0].colour, linewidth=0.8, zorder=1, label=label)
     _draw_floors(axes, data)
     axes.legend(loc="lower left")
 
@@ -152,7 +153,8 @@ def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_bias(axes: Axes, data: xr.Dataset) -> None:
     """Draw the bias of R against the wait, over the standard error of the paper's mean."""
-    axes.axhspan(-1.0, 1.0, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
+    shade: Style = {"color": FAINT, "alpha": 0.25, "linewidth": 0, "zorder": 0}
+    axes.axhspan(-1.0, 1.0, label="paper's error", **shade)
     for look, bed in zip(LINE_STYLES, slices_along(data, "point"), strict=False):
         yardstick = paper_error(bed)
         bias, bar = (column / yardstick for column in _value_and_error(bed, "R_bias"))
@@ -172,14 +174,16 @@ def draw_bias(axes: Axes, data: xr.Dataset) -> None:
     low, high = axes.get_ylim()
     axes.set(xscale="log", ylim=(low - LEGEND_ROOM * (high - low), high))
     axes.set(xlabel="wait / $T$", ylabel=r"bias of $R$ / error of the paper's mean")
-    axes.legend(loc="lower center", ncols=2)
+    axes.legend(loc="lower center", ncols=2, framealpha=0.0)
 
 
 def draw_lack(axes: Axes, data: xr.Dataset) -> None:
     """Draw the lack of translational energy against the time in e-folds of theory, log-linear."""
+    hidden = 0
     for look, bed in zip(LINE_STYLES, slices_along(data, "point"), strict=False):
         lack, bar = _value_and_error(bed, "lack")
         shown = (lack > RESOLVED * bar) & (bed.time.values < LAST_E_FOLD * float(bed.settling))
+        hidden += np.sum(~shown)
         time = bed.time.values[shown] / float(bed.settling)
         label = f"{_bed_name(bed)}: {float(bed.settling):.4g} $T$"
         style: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "label": label}
@@ -191,7 +195,9 @@ def draw_lack(axes: Axes, data: xr.Dataset) -> None:
     )
     axes.set_ylabel(r"$1 - E_\mathrm{trans}/$settled $E_\mathrm{trans}$")
     axes.set_ylim(np.exp(-LAST_E_FOLD) / 20.0, 2.0)  # room for the legend
-    axes.legend(loc="lower left", title="e-folds by theory:", alignment="left")
+    title = f"{hidden} points, later or within {RESOLVED:g} errors\nof 0, are not drawn; "
+    title += "e-folds by theory:"
+    axes.legend(loc="lower left", title=title, alignment="left")
 
 
 def paper_error(bed: xr.Dataset) -> float:
@@ -258,20 +264,20 @@ def _draw_events(axes, data):
     data."""
     seconds = data.statistical_seconds.values
     error = _value_and_error(data, "statistical_error")
-    axes.errorbar(seconds, *error, fmt="o", color=THEORY, ms=3, **BARS)
+    label = "events: statistical error"
+    axes.errorbar(seconds, *error, fmt="o", color=THEORY, ms=3, label=label, **BARS)
     last = float(data.event_cpu_seconds), float(data.event_R_stderr / data.reference_R)
     scale = last[1] * np.sqrt(last[0])
     time_range = np.array([seconds[len(seconds) // 2], 10.0 * last[0]])
-    axes.plot(
-        time_range, scale / np.sqrt(time_range), color=THEORY, label="events: statistical error"
-    )
+    law = scale / np.sqrt(time_range)
+    axes.plot(time_range, law, color=THEORY, label="events: law of errors, (CPU s)$^{-1/2}$")
 
 
 def _draw_method(axes, data, kind, look, label):
     """Draw sqrt(2) |deviation| against the CPU seconds after which the statistical error equals
     it."""
     deviation, stderr = _value_and_error(data, f"{kind}_deviation")
-    resolved = np.abs(deviation) > RESOLVED * stderr
+    resolved = _is_resolved(data, kind).values
     size, bar = TOTAL_ERROR * np.abs(deviation[resolved]), TOTAL_ERROR * stderr[resolved]
     seconds = data[f"{kind}_matched_seconds"].values[resolved]
     # both coordinates stem from one measured deviation: its error moves a point along a slanted bar
@@ -284,7 +290,7 @@ def _draw_method(axes, data, kind, look, label):
 def _name_contact_times(axes, data):
     """Write t_c nu next to the outermost of the points that share it."""
     small = {"fontsize": 7, "color": GREY}
-    resolved = np.abs(data.soft_deviation) > RESOLVED * data.soft_deviation_stderr
+    resolved = _is_resolved(data, "soft")
     seconds = data.soft_matched_seconds.where(resolved, 0.0)
     for share in data.contact_time.values[resolved.any("steps").values]:
         steps = seconds.sel(contact_time=share).idxmax("steps")
@@ -292,4 +298,12 @@ def _name_contact_times(axes, data):
         position = point.soft_matched_seconds.item(), TOTAL_ERROR * abs(point.soft_deviation.item())
         axes.annotate(f"{share:g}", position, (5, 4), textcoords="offset points", **small)
     corner = {"transform": axes.transAxes, "ha": "right", "va": "top"}
-    axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **corner, **small)
+    hidden = int((~resolved).sum() + (~_is_resolved(data, "model")).sum())
+    text = r"numbers: $t_c\nu$ of soft spheres"
+    text += f"\n{hidden} points within {RESOLVED:g} errors of 0\nare not drawn"
+    axes.text(0.98, 0.97, text, **corner, **small)
+
+
+def _is_resolved(data, kind):
+    """Return a mask of the points of a kind whose deviation from the reference is resolved."""
+    return np.abs(data[f"{kind}_deviation"]) > RESOLVED * data[f"{kind}_deviation_stderr"]

@@ -43,7 +43,7 @@ def draw(couette: xr.Dataset, sheared: xr.Dataset) -> Figure:
     grid = np.linspace(-1, 1, 401)
     above.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=plotting.DOTS, zorder=0)
     above.plot(grid, lun_ratio(grid, couette.attrs["inertia"]), color=THEORY, zorder=0)
-    above.set(ylabel=plotting.ENERGY_RATIO, ylim=(-0.02, 1.02))
+    above.set(ylabel=plotting.ENERGY_RATIO, ylim=(-0.02, 1.15))
     above.legend(handles=_legend_keys(drawn), loc="upper right")
     plotting.BETA.prepare(beneath)
     beneath.set(ylabel="shear rate\n" r"$\Gamma a\,(m/T_\mathrm{tr})^{1/2}$")
@@ -61,6 +61,7 @@ def _legend_keys(drawn: list[plotting.Series]) -> list:
     keys = [key(look.colour, label, "s") for label, look in looks.items()]
     keys += [key(GREY, label, marker) for label, marker in GASES.items()]
     keys += [key(GREY, EXPECTED_LABEL, "_", ms=10, mew=1.2), key(THEORY, plotting.ANY_R, "", "-")]
+    keys.append(key(FAINT, "equipartition", "", plotting.DOTS))
     return keys + plotting.keys_of_steadiness(drawn)
 
 

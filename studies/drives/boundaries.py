@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas import plotting
-from roughgas.plotting import THEORY, TWO_WIDE, InputError
+from roughgas.plotting import GREY, THEORY, TWO_WIDE, InputError
 
 SMOOTH = -1.0
 PANELS = {
@@ -41,7 +41,8 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
         statement, title_of_data = title
         message = plotting.judged_title(__file__, statement, [data], title_of_data)
         plotting.add_title(axes, [data], rf"{name}, $r = {plotting.RESTITUTION:g}$", message)
-    panels[0].legend(title="dashes: rate equations", loc="upper left")
+    panels[0].plot([], [], "_", color=GREY, markersize=11, label="rate equations")
+    panels[0].legend(loc="upper left")
     plotting.add_notes(figure, drawn)
     panels[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     return figure

@@ -32,20 +32,20 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     `boundaries` are the bed on rough floors, the bed between rough walls, and the gas between
     shaken walls.
     """
-    averages = plotting.averages_of(heated)
+    rows = plotting.rows_of(heated)
     low = min(0.0, *(float(data.input_spin_share.min()) for data in boundaries))
     axis = plotting.SPIN_SHARE._replace(limits=(low - 0.03, 1.03), drawn=(low, 1))
-    figure, (panel,) = plotting.ratio_panels([axis], averages=averages)
+    figure, (panel,) = plotting.ratio_panels([axis], rows=rows)
     drawn = []
     for data, marker in zip((heated, *boundaries), DRIVES.values(), strict=True):
         looks = [look._replace(marker=marker) for look in LINE_STYLES]
         curves = plotting.series_for_each(data, "beta", line_styles=looks)
         curves = curves if data is heated else [_over_measured_share(series) for series in curves]
-        plotting.draw_series(panel, curves, averages)
+        plotting.draw_series(panel, curves, rows)
         drawn += curves
     heated_curves = drawn[: heated.beta.size]
     plotting.draw_theory(panel, heated_curves)
-    plotting.frame_rows(panel, drawn, drawn, averages)
+    plotting.frame_rows(panel, drawn, rows)
     drives = [panel.main.plot([], [], mark, color=GREY)[0] for mark in DRIVES.values()]
     panel.main.add_artist(panel.main.legend(drives, DRIVES, loc="upper left"))
     lines = [

@@ -68,7 +68,10 @@ def draw_exact(axes: Axes, data: xr.Dataset) -> None:
     axes.set_yticks(range(len(z_of_quantity)), list(z_of_quantity))
     axes.set(xlim=(-LARGEST_Z - 0.2, LARGEST_Z + 0.2), ylim=(len(z_of_quantity) - 0.4, -0.6))
     axes.set_xlabel("$z$ of ours minus exact")
-    axes.set_title("(a) numbers that are known exactly", loc="left", fontsize=8.5)
+    beyond = sum(abs(z) > LARGEST_Z for values in z_of_quantity.values() for z in values)
+    title = f"(a) numbers that are known exactly; grey: within {SIGNIFICANT:g} standard errors"
+    title += f"; {beyond} beyond are at the edge" if beyond else ""
+    axes.set_title(title, loc="left", fontsize=8.5)
     axes.tick_params(axis="y", which="both", left=False, right=False)
 
 

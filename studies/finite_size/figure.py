@@ -10,6 +10,7 @@ from roughgas.plotting import GREY, LINE_STYLES, THEORY, LineStyle, Style
 from roughgas.tasks import slices_along
 
 SIZE = (7.0, 7.6)  # inches
+BETA_MARKERS = "osD^v<>"
 ERROR_BARS: Style = {"ls": "none", "elinewidth": 0.8}
 SMALL_MARKER, LARGE_MARKER = 3.0, 6.0
 """Marker sizes of the smallest and of the largest number of particles."""
@@ -76,31 +77,28 @@ def draw_box(axes: Axes, data: xr.Dataset) -> None:
     """Draw R by events over R by DSMC at equal numbers of particles, minus 1, over the size of the
     box."""
     fills = ("white", None)
+    betas = sorted({str(beta) for beta in data.beta.values}, key=float, reverse=True)
+    markers = dict(zip(betas, BETA_MARKERS, strict=False))
     for point, look in _points_with_looks(data):
         for gases, fill in zip(slices_along(point, "packing"), fills, strict=False):
             style: Style = {
                 "color": look.colour,
-                "marker": look.marker,
+                "marker": markers[str(point.beta.item())],
                 "mfc": fill or look.colour,
                 "ms": 4,
             }
             y, bar = 100 * gases.over_dsmc, 100 * gases.over_dsmc_stderr
             axes.errorbar(gases.box, y, bar, **style, **ERROR_BARS)
-    for (name, r), look in _looks(data).items():
-        axes.plot(
-            [],
-            [],
-            look.marker,
-            color=look.colour,
-            ms=4,
-            label=f"{_particle_shape(name)}, $r = {r}$",
-        )
+    for beta, marker in markers.items():
+        label = rf"$\beta = {beta}$".replace("-", "\N{MINUS SIGN}")
+        axes.plot([], [], marker, color=GREY, ms=4, label=label)
     for value, fill in zip(data.packing.values, fills, strict=False):
         axes.plot([], [], "o", color=GREY, mfc=fill or GREY, ms=4, label=f"packing {value:g}")
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
     axes.set(xscale="log", xlabel="side of the box / mean free path")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%)")
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower left", title="colours as in (a)", alignment="left")
 
 
 def draw_time(axes: Axes, data: xr.Dataset) -> None:

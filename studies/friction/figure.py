@@ -31,13 +31,13 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     columns = {"loc": "upper left", "ncols": 2}
     free: Style = {
         "legend": {"loc": "lower left"},
-        "scale": _near_theory,
         "extra": _label_runaways,
     }
     return plotting.ratio_figure(
         content_for_each_beta("Vibrated bed", bed, message=titles[0], legend=columns, **COMMON),
         content_for_each_beta("Cooling gas", cooling, message=titles[1], **COMMON, **free),
         width=TWO_WIDE,
+        rows=[plotting.Row(scale=_near_theory)],
     )
 
 

@@ -12,6 +12,7 @@ from roughgas.plotting import (
     NOT_TRUSTED,
     SPIN_SHARE,
     THEORY,
+    TWO_WIDE,
     add_title,
     draw_theory,
     judged_title,
@@ -26,7 +27,7 @@ from roughgas.theory import sonine_state, stationary_ratio
 
 from .published import CUMULANTS, difference_from_published, published
 
-SIZE = (8.4, 6.6)  # inches
+SIZE = (TWO_WIDE, 6.0)  # inches
 ROWS = [["R", "a20"], ["R", "a11"], ["gap", "a02"]]
 METHODS = {"DSMC": ("s", "published, DSMC"), "EDMD": ("x", "published, events")}
 """Markers of the published methods, and their labels in the legend."""
@@ -61,6 +62,9 @@ def draw(gas: xr.Dataset) -> Figure:
     drawn = "R and cumulants beside another group's simulations"
     message = judged_title(__file__, "stationary_states_are_published", [gas], drawn)
     add_title(axes["R"], [gas], "Dilute disks driven by white noise", message)
+    axes["a20"].set_title(
+        "Cumulants of velocities and spins", fontsize=8.5, fontweight="bold", loc="left"
+    )
     figure.align_ylabels()
     return figure
 
@@ -107,9 +111,7 @@ def _by_trust(row, name):
 
 def _legend_keys(drawn, gas):
     """Return the legend's keys of colours and symbols."""
-    keys = [
-        key(series.line_style.colour, series.label, series.line_style.marker) for series in drawn
-    ]
+    keys = [key(look.colour, label, look.marker, look.line) for label, look, *_ in drawn]
     keys += [key(GREY, label, marker, mfc="none") for marker, label in METHODS.values()]
     keys.append(key(GREY, "theory: see below", "", "-"))
     if not all(trusted(gas, name).all() for name in CUMULANTS):

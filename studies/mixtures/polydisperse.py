@@ -72,7 +72,8 @@ def _draw_r(
 def _legend_keys(colours: dict[float, LineStyle], drawn: Sequence[plotting.Series]) -> list:
     """Return the legend's keys of colours, symbols and lines, and of open symbols if there are
     any."""
-    keys = [key(look.colour, f"$r = {r:g}$", "s") for r, look in colours.items()]
+    keys = [key(look.colour, f"$r = {r:g}$", "", "-", lw=4) for r, look in colours.items()]
     for label, look in {series.label: series.line_style for series in drawn}.items():
         keys.append(key(THEORY, f"standard deviation of radii {label}", look.marker, look.line))
+    keys.append(key(FAINT, "equipartition", "", plotting.DOTS))
     return keys + plotting.keys_of_steadiness(drawn)

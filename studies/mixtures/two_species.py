@@ -64,9 +64,10 @@ def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
         _finish(upper, lower, column)
     above[0].set_ylabel(r"$T_2/T_1$, translational")
     beneath[0].set_ylabel(r"$R$ of a species")
-    above[0].legend(handles=_keys_of_beta(second_species), loc="best")
     cooling = columns[0].data.attrs["theory"] == "K"
-    figure.legend(handles=_keys_of_species(theories, cooling), loc="outside lower center", ncols=2)
+    above[0].legend(handles=_keys_of_beta(second_species, cooling), loc="best")
+    keys = _keys_of_species(theories, cooling)
+    figure.legend(handles=keys, loc="outside lower center", ncols=2)
     figure.align_ylabels()
     return figure
 
@@ -138,10 +139,14 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     plotting.add_title(upper, [column.data], title, column.message)
 
 
-def _keys_of_beta(drawn: Sequence[plotting.Series]) -> list:
-    """Return the keys of colours, and of open symbols if there are any."""
+def _keys_of_beta(drawn: Sequence[plotting.Series], cooling: bool) -> list:
+    """Return the keys of colours, with lines of theory if it is known at any ratio, and of open
+    symbols if there are any."""
     looks = {float(series.data.beta): series.line_style for series in drawn}
-    keys = [key(look.colour, rf"$\beta = {beta:g}$", look.marker) for beta, look in looks.items()]
+    keys = [
+        key(look.colour, rf"$\beta = {beta:g}$", look.marker, look.line if cooling else "none")
+        for beta, look in looks.items()
+    ]
     return keys + plotting.keys_of_steadiness(drawn)
 
 
@@ -152,6 +157,7 @@ def _keys_of_species(theories: str, cooling: bool) -> list:
         (LARGE_MARKER, _pale_colour(THEORY), "2: heavy or large"),
     )
     keys = [key(colour, name, "o", ms=size) for size, colour, name in looks]
+    keys.append(key(FAINT, "equipartition", "", plotting.DOTS))
     for number, line, dash, side in zip((1, 2), LINES, DASHES, ("left", "right"), strict=True):
         label = f"{theories}, {number}"
         if cooling:

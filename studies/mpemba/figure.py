@@ -9,7 +9,7 @@ from roughgas.plotting import GREY, LINE_STYLES, add_title, judged_title
 
 from .curves import Curve, Gases, Pair, course, expected, pairs
 
-SIZE = (7.2, 12.0)  # inches
+SIZE = (7.0, 9.6)  # inches
 TIME = r"time, $\nu_\mathrm{st}\, t/2$"
 STATEMENTS = {
     "hot": "hotter_cools_first",
@@ -27,7 +27,7 @@ PAIR, MEMORY = "Two gases, the same drive", "A gas with its final temperature"
 MEMORY_STAGE = 2
 """Index of the stage in which a gas remembers its drive."""
 SHOWN_TIME = 5.0  # of the gas that remembers
-SHOWN_BEFORE = 0.12  # time shown before 0, over the time after it
+SHOWN_BEFORE, MARGIN = 0.12, 0.02  # time shown before 0 and after the last, over its span
 
 
 def draw(*gases: xr.Dataset) -> Figure:
@@ -50,7 +50,7 @@ def draw(*gases: xr.Dataset) -> Figure:
     _finish(panels[-1, 0], message, SHOWN_TIME)
     panels[-1, 1].axis("off")
     panels[-1, 1].legend(handles=_legend_keys(), loc="center")
-    add_title(panels[0, 0], paired, "Gases that cool by the same drive")
+    add_title(panels[0, 0], paired, "Gases that cool by the same drive", errors_as="Bands")
     return figure
 
 
@@ -78,7 +78,8 @@ def _draw_pair(axes: Axes, two: Pair, title: str) -> None:
         lw=0,
     )
     material = rf"$r = {two.material['r']:g}$, $\beta = {two.material['beta']:g}$"
-    _finish(axes, f"{title}\n{material}", two.published["hot"].time[-1])
+    span = max(curve.time[-1] for curve in two.published.values())
+    _finish(axes, f"{title}\n{material}", span)
 
 
 def _draw_curves(axes: Axes, curve: Curve, rates: Curve, colour: str) -> None:
@@ -94,7 +95,7 @@ def _finish(axes: Axes, text: str, span: float) -> None:
     axes.text(0.97, 0.95, text, ha="right", va="top", transform=axes.transAxes, fontsize=8)
     axes.axhline(1.0, color=GREY, lw=0.6, zorder=0)
     axes.axvline(0.0, color=GREY, lw=0.6, ls=":", zorder=0)
-    limits = (-SHOWN_BEFORE * span, span)
+    limits = (-SHOWN_BEFORE * span, (1.0 + MARGIN) * span)
     later = [line.get_ydata()[line.get_xdata() >= 0.0] for line in axes.lines[:-2]]
     low, high = min(map(min, later)), max(map(max, later))
     axes.set(ylabel=r"temperature $T/T_\mathrm{st}$", xlabel=TIME, xlim=limits)
@@ -108,7 +109,7 @@ def _legend_keys():
         Line2D([], [], color=LINE_STYLES[1].colour, label="colder"),
         Line2D([], [], color=GREY, lw=3, alpha=0.4, label="where ours cross"),
         Line2D([], [], color=LINE_STYLES[2].colour, label="with a memory"),
-        Line2D([], [], color=LINE_STYLES[0].colour, lw=6, alpha=0.25, label="standard errors"),
+        Line2D([], [], color=LINE_STYLES[0].colour, lw=6, alpha=0.25, label="standard error"),
         Line2D([], [], ls="none", marker="o", mfc="none", color=GREY, ms=3, label="published"),
         Line2D([], [], color="black", lw=0.8, ls="--", label="rate equations"),
     ]

@@ -14,12 +14,13 @@ from roughgas.plotting import (
     InputError,
     Panel,
     PanelContent,
+    Row,
     Series,
     Style,
-    averages_of,
     content_for_each_r,
     judged_title,
     ratio_figure,
+    rows_of,
     series,
 )
 from roughgas.theory import sonine_state
@@ -36,7 +37,7 @@ def fig1a(bed: xr.Dataset) -> Figure:
     content = content_for_each_r(
         "Vibrated bed", bed, theory=ANY_R, legend=LEGEND_AT_HALF, message=message
     )
-    return ratio_figure(content, averages=averages_of(bed))
+    return ratio_figure(content, rows=rows_of(bed))
 
 
 def fig1b(*beds: xr.Dataset) -> Figure:
@@ -57,11 +58,10 @@ def fig1b(*beds: xr.Dataset) -> Figure:
         message=judged_title(
             __file__, "only_rough_walls_matter", beds, "R of a vibrated bed between side walls"
         ),
-        # the shift by rough walls is ten times the others, and does not set the scale
-        scale=lambda drawn: [drawn[0], *drawn[2:]],
         room=0.15,
     )
-    return ratio_figure(content)
+    # the shift by rough walls is ten times the others: a second row shows these
+    return ratio_figure(content, rows=[Row(), Row(scale=lambda drawn: [drawn[0], *drawn[2:]])])
 
 
 def fig2a(sheared: xr.Dataset) -> Figure:

@@ -1,12 +1,16 @@
 """Shaken layers from above, as in the published figure, with their heights and correlations over
 time."""
 
+from collections.abc import Sequence
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 
 from roughgas.plotting import FAINT, LINE_STYLES, TWO_WIDE, judged_title
 
@@ -23,31 +27,55 @@ from .published import (
     layers_of_panels,
     order,
     panels,
+    panels_in,
     period,
     room,
     settled,
     side,
     wavelength,
 )
+from .seen import clearest, pictured, seen
 
-HEIGHT = 6.9  # inches
-COLUMNS = 4
-SMALL_FONT = 5.5  # points
+PICTURE, CAPTION = 6.6, 1.05  # inches: sum of the widths of a row's pictures, height of texts
+LETTERS_PER_INCH, NO_BREAK = 18, "\N{NO-BREAK SPACE}"
+HEIGHT, BELOW = 8.3, 2.3  # inches: of the figure, and of the lowest row
+SMALL_FONT = 7.0  # points
 Q = {2: "Q₂", 4: "Q₄", 6: "Q₆"}
 GREYS = (2, 98)  # percentiles of height that are black and white
-DRAWN = "Heights of shaken layers, seen from above, beside published wavelengths and periods"
+GREY_SCALE: dict[str, Any] = {
+    "cmap": colormaps["gray"].resampled(32),  # which makes small files
+    "origin": "lower",
+    "interpolation": "bilinear",
+}
+DRAWN = "Heights of shaken layers, seen from above, beside published patterns"
 
 
-def draw(layers: xr.Dataset) -> Figure:
-    """Draw the figure from the reduced dataset of layers."""
+def draw(layers: xr.Dataset, large: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced datasets of layers and of large ones: pictures of cases that
+    are large, then of all others, and heights and correlations of all `layers` over time."""
     figure = Figure(figsize=(TWO_WIDE, HEIGHT), layout="constrained")
-    *above, below = figure.subfigures(3, 1, height_ratios=(1.22, 1.22, 1))
-    simulated = {panel.panel: layer for panel, layer in layers_of_panels(layers)}
-    pictures = np.concatenate([row.subplots(1, COLUMNS) for row in above])
-    for axes, panel in zip(pictures, panels(), strict=True):
-        _draw_picture(axes, panel, simulated.get(panel.panel), layers.attrs["particles"])
-    shown = {panel.case: simulated[panel.panel] for panel in panels() if panel.panel in simulated}
-    over, apart = below.subplots(1, 2)
+    rows = [panels_in(large), panels_in(layers, without=large)]
+    heights = [PICTURE / len(row) + CAPTION for row in rows if row]
+    *above, below = np.atleast_1d(
+        figure.subfigures(len(heights) + 1, 1, height_ratios=(*heights, BELOW))
+    )
+    for subfigure, row, data in zip(above, filter(None, rows), (large, layers), strict=False):
+        for axes, (panel, layer) in zip(
+            np.atleast_1d(subfigure.subplots(1, len(row))), row, strict=True
+        ):
+            _draw_picture(axes, panel, layer)
+        subfigure.suptitle(_row_title(row, data.attrs["particles"]), fontsize=8)
+    _draw_over_time(below, layers)
+    message = judged_title(__file__, "it_repeats_when_published", [layers], DRAWN)
+    figure.suptitle(message, fontsize=8.5, fontweight="bold", x=0.01, ha="left")
+    return figure
+
+
+def _draw_over_time(subfigure: SubFigure, layers: xr.Dataset) -> None:
+    """Draw the mean height of each layer over four cycles, and correlations of heights."""
+    shown = {panel.case: layer for panel, layer in layers_of_panels(layers)}
+    handles: list[Line2D] = []
+    over, apart = subfigure.subplots(1, 2)
     for axes in (over, apart):
         axes.tick_params(labelsize=7)
     for number, (case, gamma) in enumerate({panel.case: panel.gamma for panel in panels()}.items()):
@@ -57,20 +85,31 @@ def draw(layers: xr.Dataset) -> Figure:
                 "-" if number < len(LINE_STYLES) else "--",
             )
             style: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line}
-            style["label"] = f"{case}: " + ", ".join(f"{length:.2f}" for length in flights(gamma))
             draw_height(over, shown[case], style)
-            _draw_correlation(apart, shown[case], style | {"marker": look.marker, "ms": 3})
-    over.set_ylim(0.0, 1.5 * over.get_ylim()[1])
+            style |= {"marker": look.marker, "ms": 3}
+            _draw_correlation(apart, shown[case], style)
+            label = f"{case}: " + ", ".join(f"{length:.2f}" for length in flights(gamma))
+            handles.append(Line2D([], [], label=label, **style))
+    over.set_ylim(0.0, 1.75 * over.get_ylim()[1])
     title = "panel: flights of a ball that does not bounce, in cycles"
     keys: dict[str, Any] = {
         "fontsize": SMALL_FONT,
         "title_fontsize": SMALL_FONT,
-        "handlelength": 1.5,
+        "handlelength": 1.7,
     }
-    over.legend(**keys, title=title, ncols=3, loc="upper center")
-    message = judged_title(__file__, "it_repeats_when_published", [layers], DRAWN)
-    figure.suptitle(message, fontsize=8.5, fontweight="bold", x=0.01, ha="left")
-    return figure
+    over.legend(
+        handles=handles, **keys, title=title, ncols=3, loc="upper center", columnspacing=1.0
+    )
+    size = f"{side(next(iter(shown.values()))):g} D"
+    for axes, quantity in ((over, "mean height"), (apart, "correlation, symbols as left")):
+        axes.set_title(f"{quantity}, boxes of {size}", fontsize=8, loc="left")
+
+
+def _row_title(row: Sequence[tuple[Panel, xr.Dataset]], number: int) -> str:
+    """Return the size of the boxes of a row of pictures, and the cycles before the measurement."""
+    before = [round(cycles(*pair)) for pair in row]
+    span = " to ".join(map(str, dict.fromkeys([min(before), max(before)])))
+    return f"Boxes of {side(row[0][1]):g} D, $N = {number}$, after {span} cycles"
 
 
 def draw_full(layers: xr.Dataset) -> Figure:
@@ -91,36 +130,32 @@ def draw_cycles(row: np.ndarray, layer: xr.Dataset) -> None:
     first, heights = clearest(layer), layer.mean_height
     heights = heights - heights.mean(("cell_x", "cell_y"))
     low, high = np.percentile(heights.values, GREYS)
-    look: dict[str, Any] = {"cmap": "gray", "vmin": low, "vmax": high}
     for number, axes in enumerate(row):
         deviation = heights[(first + number) % CYCLES].values.T
-        axes.imshow(deviation, origin="lower", interpolation="bilinear", **look)
+        axes.imshow(deviation, vmin=low, vmax=high, **GREY_SCALE)
         axes.set(xticks=[], yticks=[])
         later = f"{number} cycle{'s' * (number > 1)} later" if number else "now"
         axes.set_title(later, fontsize=7.5)
 
 
-def _draw_picture(axes, panel: Panel, layer, number):
-    """Draw the mean height at its clearest phase, for panel d one cycle later."""
+def _draw_picture(axes: Axes, panel: Panel, layer: xr.Dataset) -> None:
+    """Draw the mean height at its clearest phase, for panel d one cycle later, with what is seen
+    there above, and what is published below."""
     axes.set(xticks=[], yticks=[])
-    axes.set_title(f"({panel.panel}) {panel.pattern}", fontsize=7.5, loc="left")
-    if layer is None:
-        axes.text(0.5, 0.5, "not simulated", ha="center", va="center", color=FAINT)
-        axes.set_aspect("equal")
-        axes.set_xlabel(f"published: {published_text(panel)}", fontsize=SMALL_FONT)
-        return
-    best = clearest(layer)
-    heights = layer.mean_height[(best + (panel.panel == "d")) % CYCLES].values.T
+    axes.set_title(f"({panel.panel}) {seen(panel, layer)}", fontsize=7.5, loc="left")
+    heights = pictured(panel, layer).T
     low, high = np.percentile(heights, GREYS)
-    axes.imshow(heights, cmap="gray", origin="lower", vmin=low, vmax=high, interpolation="bilinear")
-    texts = measured_text(panel, layer), published_text(panel), size_text(panel, layer, number)
-    text = f"ours: {texts[0]}\npublished: {texts[1]}\n{texts[2]}"
-    axes.set_xlabel(text, fontsize=SMALL_FONT, linespacing=1.35)
-
-
-def clearest(layer: xr.Dataset) -> int:
-    """Return the phase, of four cycles, with the largest variation of heights."""
-    return int(np.argmax(layer.mean_height.std(("cell_x", "cell_y")).values))
+    axes.imshow(heights, vmin=low, vmax=high, **GREY_SCALE)
+    texts = (
+        f"ours: {measured_text(panel, layer)}",
+        f"published: {panel.pattern}, {published_text(panel)}",
+    )
+    width = int(LETTERS_PER_INCH * TWO_WIDE / axes.get_gridspec().ncols)
+    # a line breaks only after a comma
+    unbroken = [text.replace(" ", NO_BREAK).replace(f",{NO_BREAK}", ", ") for text in texts]
+    lines = [line for text in unbroken for line in wrap(text, width)]
+    lines.append(f"{side(layer):g} D = {room(panel, layer):.1f} λ")
+    axes.set_xlabel("\n".join(lines), fontsize=SMALL_FONT, linespacing=1.35)
 
 
 def published_text(panel: Panel) -> str:

@@ -62,6 +62,14 @@ def layers_of_panels(layers: xr.Dataset) -> Iterator[tuple[Panel, xr.Dataset]]:
             yield panel, layers.sel(case=panel.case).isel(r=0, beta=0)
 
 
+def panels_in(
+    layers: xr.Dataset, without: xr.Dataset | None = None
+) -> list[tuple[Panel, xr.Dataset]]:
+    """Return panels and layers (`layers_of_panels`) of all cases that `without` lacks."""
+    left_out = [] if without is None else without.case
+    return [pair for pair in layers_of_panels(layers) if pair[0].case not in left_out]
+
+
 def side(layer: xr.Dataset) -> float:
     """Return the side of the box in D."""
     return float(layer.cell_x[0] + layer.cell_x[-1]) / DIAMETER

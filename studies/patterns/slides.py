@@ -10,7 +10,8 @@ from roughgas.plotting import GREY, LINE_STYLES, THEORY
 
 from .ball import CYCLE, ball_heights, flights
 from .figure import draw_cycles, draw_height, measured_text, published_text, size_text
-from .published import CYCLES, Panel, layers_of_panels, panels
+from .published import CYCLES, Panel, panels, panels_in
+from .seen import seen
 
 WIDTH, HEIGHT, LAYER_HEIGHT = 5.0, 3.6, 2.7  # inches: letters are legible on a phone
 FLOOR_BOTTOM = -1.2  # amplitudes of the floor
@@ -32,24 +33,25 @@ LAYER_TEXT = """\
 From above, the lighter the higher, grey the mean; in flight there is no pattern."""
 
 
-def draw(layers: xr.Dataset) -> Iterator[tuple[str, str, Figure]]:
-    """Yield name, text and figure of each slide."""
+def draw(layers: xr.Dataset, large: xr.Dataset) -> Iterator[tuple[str, str, Figure]]:
+    """Yield name, text and figure of each slide: of a large layer where the case has one."""
     yield "What is shaken, and why the pattern turns over", SETUP_TEXT, _draw_balls()
-    cases: dict[str, tuple[list[Panel], xr.Dataset]] = {}
-    for panel, layer in layers_of_panels(layers):  # c and d are the same layer
-        cases.setdefault(panel.case, ([], layer))[0].append(panel)
-    for case_panels, layer in cases.values():
-        panel, number = case_panels[0], layers.attrs["particles"]
+    cases: dict[str, tuple[list[Panel], xr.Dataset, int]] = {}
+    for data, pairs in ((large, panels_in(large)), (layers, panels_in(layers, without=large))):
+        for panel, layer in pairs:  # c and d are the same layer
+            cases.setdefault(panel.case, ([], layer, data.attrs["particles"]))[0].append(panel)
+    for _, (case_panels, layer, number) in sorted(cases.items()):
+        panel = case_panels[0]
         text = LAYER_TEXT.format(
             gamma=panel.gamma,
             f_star=panel.f_star,
             flights=" and ".join(f"{length:.2f}" for length in flights(panel.gamma)),
-            published=published_text(panel),
+            published=f"{panel.pattern}, {published_text(panel)}",
             size=size_text(panel, layer, number),
             measured=measured_text(panel, layer),
         )
         yield (
-            f"({', '.join(panel.panel for panel in case_panels)}) {panel.pattern}",
+            f"({', '.join(panel.panel for panel in case_panels)}) {seen(panel, layer)}",
             text,
             _draw_layer(layer),
         )

@@ -27,6 +27,7 @@ AVERAGES = {
     "R_collisional": "at contacts",
 }
 BARS: Style = {"capsize": 1.5, "elinewidth": 0.8}
+LEGEND_ROOM = 0.45  # above the data, over their range
 
 
 TITLES = (
@@ -123,7 +124,9 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
     axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if the formula were exact")
     axes.set_xlabel(FACTOR_LABEL)
     axes.set_ylabel(r"$\theta/\theta_\mathrm{Lun}$ of the simulation")
-    axes.legend(loc="best", title="sheared disks")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + LEGEND_ROOM * (high - low))
+    axes.legend(loc="upper left", title="sheared disks")
 
 
 FACTOR_LABEL = r"$1 + (p^2 + d^2)/4 + \sqrt{\pi}\,gp/4 + g^2/4$"

@@ -6,11 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from roughgas import theory
 from roughgas.judging import Estimate
-from roughgas.plotting import GREY, LINE_STYLES, THEORY, Style, particles_of
+from roughgas.plotting import GREY, LINE_STYLES, THEORY, Style, key, particles_of
 
 from . import dilute
 from .coefficients import (
@@ -28,7 +27,7 @@ from .coefficients import (
 SIZE = (7.0, 3.4)  # inches
 SHOWN_MEMORY = 5.0
 """Collisions per particle up to which memory is drawn."""
-DIFFUSION_MESSAGES = "Memory of velocities", "Diffusion of driven disks"
+DIFFUSION_MESSAGES = "Memory of velocities, elastic", "Diffusion of driven disks"
 FLUX_MESSAGES = "Viscosity of driven disks in shear", "Elastic gases beside theory"
 WALLS = "conductivity, between walls"
 SMOOTH_AT = -0.04
@@ -107,7 +106,8 @@ def _draw_rough(axes: Axes, rows: Sequence[dilute.LongRow], kind: str) -> None:
         dimension = dilute.DIMENSIONS[kind]
         factors = theory.spin_corrections(fine, dimension)[list(MEMORY_LENGTHS).index(quantity)]
         axes.plot(fine, factors, color=colour, lw=0.9, label=f"{label}spins correlated")
-    axes.axhline(1.0, color=THEORY, lw=0.9, ls="--", zorder=0)
+    label = "first approximation"
+    axes.axhline(1.0, color=THEORY, lw=0.9, ls="--", zorder=0, label=label)
     axes.axvline(SMOOTH_AT / 2.0, color=GREY, lw=0.7, ls=":", zorder=0)
     axes.set(xlabel="$q = I/(m a^2)$ (left of the dots: smooth)", xlim=(2.0 * SMOOTH_AT, 0.7))
 
@@ -128,8 +128,8 @@ def _draw_memory(axes: Axes, gases: Mapping[str, xr.Dataset]) -> None:
         fine = np.linspace(0.0, SHOWN_MEMORY, 100)
         axes.plot(fine, np.exp(-fine / expected(gas_at_point)), color=look.colour, lw=0.9)
     axes.set(xlabel="collisions per particle", ylabel=r"$C_v(t)/C_v(0)$", yscale="log")
-    axes.set(xlim=(0.0, SHOWN_MEMORY), ylim=(3e-3, 1.2))
-    axes.legend(title="elastic; lines: theory")
+    axes.set(xlim=(-0.12, SHOWN_MEMORY), ylim=(3e-3, 1.5))
+    axes.legend(title="lines: theory")
 
 
 def _draw_diffusion(axes: Axes, gas: xr.Dataset) -> None:
@@ -141,7 +141,6 @@ def _draw_diffusion(axes: Axes, gas: xr.Dataset) -> None:
 
     _draw_driven(axes, gas, by_displacement, line)
     axes.set(ylabel=r"$D_s\,\nu/T$")
-    axes.axhline(1.0, color=GREY, lw=0.7, ls=":", zorder=0)
 
 
 def _draw_viscosity(axes: Axes, gas: xr.Dataset) -> None:
@@ -173,7 +172,7 @@ def _draw_driven(
     line: Callable[[float, np.ndarray], np.ndarray],
 ) -> None:
     """Draw a coefficient of driven disks over their roughness, and theory."""
-    fine, keys = np.linspace(-1.0, 1.0, 101), [Line2D([], [], color=THEORY, lw=0.9, label="theory")]
+    fine, keys = np.linspace(-1.0, 1.0, 101), []
     for r, look in zip(sorted(gas.r.values, reverse=True), LINE_STYLES, strict=False):
         points = [gas.sel(r=r, beta=beta) for beta in gas.beta.values]
         points = [row for row in points if np.isfinite(row.R).all()]
@@ -182,11 +181,9 @@ def _draw_driven(
         style: Style = {"fmt": look.marker, "color": look.colour, "ms": 4, "lw": 0.9}
         axes.errorbar(at, values, [point.stderr for point in estimates], **style)
         axes.plot(fine, line(r, fine), color=look.colour, lw=0.9)
-        keys.append(
-            Line2D([], [], ls="none", marker=look.marker, color=look.colour, label=f"$r = {r:g}$")
-        )
-    axes.set(xlabel=r"$\beta$", xlim=(-1.05, 1.05))
-    axes.legend(handles=keys, title="driven disks", loc="best")
+        keys.append(key(look.colour, f"$r = {r:g}$", look.marker, "-", ms=4, lw=0.9))
+    axes.set(xlabel=r"roughness $\beta$", xlim=(-1.05, 1.05))
+    axes.legend(handles=keys, title="lines: theory", loc="best")
 
 
 def _draw_elastic(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
@@ -207,7 +204,7 @@ def _draw_elastic(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
                 at, colour = kinds.index(kind) + 0.2 * (number - 1.5), LINE_STYLES[number].colour
                 axes.errorbar(at, value, stderr, fmt=marker, color=colour, ms=4, lw=0.9)
     keys = [
-        Line2D([], [], ls="none", marker=marker, color=look.colour, label=name_of_coefficient)
+        key(look.colour, name_of_coefficient, marker)
         for (name_of_coefficient, marker), look in zip(MARKERS.items(), LINE_STYLES, strict=False)
     ]
     axes.axhline(1.0, color=THEORY, lw=0.9, zorder=0)

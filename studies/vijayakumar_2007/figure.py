@@ -32,7 +32,8 @@ def draw(smooth: xr.Dataset, rough: xr.Dataset) -> Figure:
     ]
     keys.append(key(THEORY, "balance of momentum", "", "-"))
     left.set(xlabel="height / a", ylabel="flow / (a/T)")
-    right.set(xlabel=r"roughness $\beta$ of the disks", ylabel="shear stress on a wall / (m/T²)")
+    right.set(xlabel=r"roughness $\beta$ of the disks", ylabel="shear stress on a wall\n/ (m/T²)")
+    right.margins(x=0.1)
     for axes, statement, drawn in (
         (left, "rough_walls_slip_less", "Profiles of the flow"),
         (right, "walls_carry_the_body_force", "Shear stress on the walls"),

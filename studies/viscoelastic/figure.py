@@ -41,17 +41,21 @@ def draw(gas: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the viscoelastic cooling gas."""
     figure = Figure(figsize=SIZE, layout="constrained")
     left, right = figure.subplots(1, 2)
-    keys = [key(THEORY, "theory", "", "-", lw=0.9)]
+    keys, later = [key(THEORY, "theory", "", "-", lw=0.9)], 0
     for beta, look in zip(gas.beta.values, LINE_STYLES, strict=False):
         keys.append(key(look.colour, rf"$\beta = {beta:g}$", "s"))
         for r, marker in zip(sorted(gas.r.values, reverse=True), MARKERS, strict=False):
             gas_at_point = gas.sel(r=r, beta=beta)
             if np.isfinite(gas_at_point.E_trans):
-                _draw_energy(left, gas_at_point, look._replace(marker=marker))
+                later += _draw_energy(left, gas_at_point, look._replace(marker=marker))
                 _draw_ratio(right, gas_at_point, look._replace(marker=marker))
     for r, marker in zip(sorted(gas.r.values, reverse=True), MARKERS, strict=False):
         keys.append(key(GREY, f"$r = {r:g}$ at first", marker))
+    keys.append(key(FAINT, "power laws", "", "--"))
     _draw_powers(left)
+    if later:
+        text = f"{later} points beyond\n$10^{{{np.log10(LATEST_TIME):.0f}}}\\,T$ are not drawn"
+        left.text(0.04, 0.04, text, transform=left.transAxes, fontsize=7.5, color=GREY)
     energy = r"$E_\mathrm{trans}$ / initial $E_\mathrm{trans}$"
     left.set(xscale="log", yscale="log", xlabel="time / $T$", ylabel=energy)
     left.set(xlim=(0.5, 2 * LATEST_TIME), ylim=(2e-11, 4))
@@ -61,13 +65,15 @@ def draw(gas: xr.Dataset) -> Figure:
         message = judged_title(__file__, statement, [gas], drawn)
         axes.set_title(message, fontsize=8.5, fontweight="bold", loc="left")
     figure.suptitle(f"Viscoelastic disks that cool, $N = {particles_of(gas)}$", fontsize=8)
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
+    figure.legend(handles=keys, loc="outside lower center", ncols=(len(keys) + 1) // 2)
     return figure
 
 
-def _draw_energy(axes: Axes, point: xr.Dataset, look: LineStyle) -> None:
+def _draw_energy(axes: Axes, point: xr.Dataset, look: LineStyle) -> int:
+    """Draw E_trans over time, and theory; return the number of symbols beyond LATEST_TIME."""
     time, energy = point.time_series.values, point.E_trans_series.values
-    drawn = np.flatnonzero(time <= LATEST_TIME)[DRAWN_INTERVAL - 1 :: DRAWN_INTERVAL]
+    symbols = np.arange(DRAWN_INTERVAL - 1, len(time), DRAWN_INTERVAL)
+    drawn = symbols[time[symbols] <= LATEST_TIME]
     style: Style = {"color": look.colour, "ms": 3.2, "linestyle": "none"}
     axes.plot(time[drawn], energy[drawn], marker=look.marker, **style)
     frequency = theory.collision_frequency(1.0, float(point.attrs["packing"]))
@@ -82,6 +88,7 @@ def _draw_energy(axes: Axes, point: xr.Dataset, look: LineStyle) -> None:
         point.attrs["inertia"],
     )
     axes.plot(gas.time[1:], gas.T_tr[1:], color=look.colour, lw=0.9, zorder=1)
+    return len(symbols) - len(drawn)
 
 
 def _draw_powers(axes: Axes) -> None:

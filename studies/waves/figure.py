@@ -33,9 +33,8 @@ def draw(waves: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of a bed shaken in several ways: a panel for each
     r, from nearly elastic downwards, and one message for all."""
     restitutions = sorted(waves.r.values, reverse=True)
-    first = restitutions[0]
     message = judged_title(__file__, "wave_form_changes_nothing", [waves], DRAWN)
-    contents = [_content(waves, r, message if r == first else "") for r in restitutions]
+    contents = [_content(waves, r, message) for r in restitutions]
     figure = ratio_figure(*contents, width=TWO_WIDE if len(contents) > 1 else WIDTH)
     figure.axes[len(contents)].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
     return figure

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.text import Text
+from tests.show.figures.legibility import faults
 from tests.study_modules import ROOT, module_of_study
 from tests.synthetic import reduced
 
@@ -104,12 +104,49 @@ def test_evidence_has_no_value_of_unsettled_patterns():
         assert np.isnan(row.ours.value) and verdicts([row]) == [NOT_KNOWN]
 
 
-def test_panels_name_missing_and_unsettled_layers():
-    figure = module_of_study("patterns", "figure").draw(layers(20, ("cd", "g"), fading=0.9))
-    texts = [text.get_text() for text in figure.findobj(Text)]
-    assert sum("not simulated" in text for text in texts) == 5
-    ours = [text for text in texts if text.startswith("ours: ")]
-    assert len(ours) == 3 and all("not settled" in text and "N = 2400" in text for text in ours)
+def test_pictures_of_large_layers_come_first_and_all_are_named_by_what_is_seen():
+    """A box of fewer than four waves names no pattern; unsettled layers are named, too."""
+    small, large = layers(20, ("b", "cd", "g"), fading=0.9), layers(100, ("g",))
+    draw = module_of_study("patterns", "figure").draw
+    assert faults(lambda: draw(small, large)) == []
+    pictures = [axes for axes in draw(small, large).axes if axes.images]
+    assert [axes.get_title("left") for axes in pictures] == [
+        *("(g) straight stripes", "(b) 1.0 waves: too few"),
+        *("(c) 0.8 waves: too few", "(d) 0.8 waves: too few"),
+    ]
+    texts = [" ".join(axes.get_xlabel().split()) for axes in pictures]
+    assert texts[0].endswith("published: stripes, λ 20 D, Q₂ 0.87, 4 cycles 100 D = 5.0 λ")
+    assert ["not settled" in text for text in texts] == [False, True, True, True]
+
+
+def directions(*angles):
+    """Return waves of 20 D at these angles on a layer of 100 D, (x, y)."""
+    x, y = np.meshgrid(np.arange(100.0), np.arange(100.0), indexing="ij")
+    return sum(np.cos(np.pi / 10 * (x * np.cos(a) + y * np.sin(a))) for a in angles)
+
+
+RIGHT, SIXTH = np.pi / 2, np.pi / 3
+DOMAINS = np.where(np.arange(100)[:, np.newaxis] < 50, directions(0.0), directions(RIGHT))
+SEEN = {
+    "straight stripes": (directions(0.3), (0.9, 0.1, 0.1)),
+    "bent stripes": (DOMAINS, (0.3, 0.3, 0.1)),
+    "squares": (directions(0.0, RIGHT), (0.1, 0.8, 0.2)),
+    "hexagons": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.1, 0.5)),
+    "separate hills": (directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "separate hollows": (-directions(0.0, 2 * SIXTH, 4 * SIXTH), (0.1, 0.3, 0.3)),
+    "no order": (directions(0.0, 0.7, 1.1, 1.9, 2.9), (0.1, 0.2, 0.3)),
+}
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_a_pattern_has_the_name_of_its_waves(name):
+    heights, orders = SEEN[name]
+    made_up = layers(100, ("g",))
+    made_up.mean_height.values = np.broadcast_to(heights, made_up.mean_height.shape)
+    made_up.fold_order.values = np.reshape(orders, made_up.fold_order.shape)
+    study = module_of_study("patterns", "seen")
+    ((panel, layer),) = module_of_study("patterns", "published").layers_of_panels(made_up)
+    assert study.seen(panel, layer) == name
 
 
 def test_the_full_size_is_the_published_one():
@@ -174,13 +211,13 @@ def test_a_ball_lies_on_the_floor_or_falls_freely(gamma):
 
 @pytest.mark.slow
 def test_each_layer_has_a_slide_with_the_published_values(tmp_path, monkeypatch):
-    made_up = layers(20, ("cd", "g"), fading=0.9)
-    monkeypatch.setattr(slides, "read_reduced", lambda path: made_up)
+    data = {"layers.nc": layers(20, ("cd", "g"), fading=0.9), "large.nc": layers(100, ("g",))}
+    monkeypatch.setattr(slides, "read_reduced", data.get)
     page = tmp_path / "patterns.html"
-    slides.write_slides(STUDY, ["layers.nc"], title="Patterns", output=page)
+    slides.write_slides(STUDY, [*data], title="Patterns", output=page)
     text = page.read_text("utf-8")
     assert text.count("<section>") == text.count("data:image/webp;base64,") == 3
-    assert text.count("not settled") == 2 and "λ 20 D, Q₂ 0.87, 4 cycles" in text
+    assert text.count("not settled") == 1 and "λ 20 D, Q₂ 0.87, 4 cycles" in text
     assert "http" not in text.partition("<body>")[2] and len(text) < 1e6
 
 

@@ -56,8 +56,10 @@ def overview(margins: list[Margin]) -> Figure:
     axes.tick_params(axis="y", which="both", left=False, right=False)
     axes.grid(axis="x", color=FAINT, linewidth=0.3)
     axes.axvline(1.0, color=THEORY)
-    axes.set_xlabel("factor by which a measured number could be worse", fontsize=9)
-    note = "each symbol is one measured number; right: how many lie beyond the axis, or are exact"
+    axes.set_xlabel(
+        "margin: limit over measured number, or its inverse; 1: at the limit", fontsize=9
+    )
+    note = "a symbol: a measured number; right: how many lie beyond the axis, or are exact"
     axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=5)
     return figure
 
@@ -92,7 +94,8 @@ def cooling(series: Series) -> Figure:
     energy.text(0.98, -262, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
     for r, look in zip(restitutions, LINE_STYLES, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
-    ratio.set_title("thin lines: theory of free cooling", fontsize=8, loc="left")
+    energy.set_title("energy of cooling gases", fontsize=8, loc="left")
+    ratio.set_title("their $R$; thin lines: theory of free cooling", fontsize=8, loc="left")
     energy.set_ylabel(r"$\log_{10} E_\mathrm{trans}$")
     ratio.set_ylabel("$R$, means of a hundredth of the run")
     ratio.set_ylim(0.2, 0.8)
@@ -172,7 +175,7 @@ def _return_errors(axes, columns):
         axes.semilogy(length, error, look.marker, color=look.colour, ms=3, label=name)
         small = prediction < 1.0
         axes.plot(length[small], prediction[small], color=look.colour, linestyle=look.line, lw=0.9)
-    axes.set_xlabel("collisions per particle before the reversal")
+    axes.set_xlabel("collisions per particle until reversal")
     axes.set_ylabel("distance from the start")
     axes.legend(loc="lower right")
     axes.set_title("a reversed elastic gas (lines: predicted)", fontsize=8, loc="left")

@@ -68,8 +68,8 @@ def test_everything_has_films_and_added_experiments(tmp_path):
     )
     planned = project.planned("everything")
     jobs = {rule: planned[rule] for rule in ("seeds", "point", "study_movie", "movie")}
-    single_points = 1 + 7  # `wide`, and the cases of patterns, have one seed
-    seeds = JOBS + len(BEYOND) - 1
+    single_points = 1 + 7 + 2  # `wide`, and the cases of patterns, have one seed
+    seeds = JOBS + len(BEYOND) - 2
     assert jobs == {"seeds": seeds, "point": single_points, "study_movie": 1, "movie": 9}
 
 

@@ -1,4 +1,5 @@
-"""Legibility of figures: letters of at least 7 pt, no text on data, nothing cut off."""
+"""Legibility of figures: letters of at least 7 pt, no text on data, nothing cut off, and a key for
+each colour, marker and dash pattern."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -8,7 +9,11 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
@@ -20,6 +25,7 @@ MIN_POINTS = 7.0
 """Smallest legal size of letters in print, in points."""
 MIN_GAP = 2.0
 """Smallest legal gap between text and data, in points."""
+NO_MARKER = {"None", None, "", " "}
 SAMPLE_SPACING = 0.5
 """Spacing of the sampled points along a line, in points of print."""
 
@@ -32,6 +38,7 @@ def faults(draw: Callable[[], Figure]) -> list[str]:
         return [
             *_faults_of_letters(figure, texts),
             *_overlapping_texts(figure, texts),
+            *_without_key(figure),
             *(fault for axes in figure.axes for fault in _texts_on_data(figure, axes, texts)),
             *(fault for axes in figure.axes for fault in _hidden_symbols(figure, axes)),
         ]
@@ -113,6 +120,61 @@ def _texts_on_data(figure, axes, texts) -> Iterator[str]:
         if is_near.any():
             x, y = axes.transData.inverted().transform(centres[is_near][0])
             yield f"{name!r} is within {min_gap:g} pt of data, at ({x:.3g}, {y:.3g})"
+
+
+def _without_key(figure: Figure) -> Iterator[str]:
+    """Yield each colour, marker and dash pattern of drawn lines that no legend explains.
+
+    A colour may be paler than that of its key. A pattern needs no key of its own where a legend has
+    the colour, and says what "lines" are. Full lines between two points, such as the axis at 0, and
+    figures without a legend need none.
+    """
+    legends = figure.findobj(Legend)
+    keys = [line for legend in legends for line in legend.findobj(Line2D)]
+    if not keys:
+        return
+    says_lines = any(
+        "line" in text.get_text() for legend in legends for text in legend.findobj(Text)
+    )
+    colours = {to_rgb(key.get_color()) for key in keys}
+    markers = {key.get_marker() for key in keys} | NO_MARKER
+    patterns = {_pattern(key) for key in keys} | {None}
+    for line in _lines_of_data(figure):
+        colour = to_rgb(line.get_color())
+        has_colour = any(_is_paler(colour, key) for key in colours)
+        if not has_colour:
+            yield f"no key has the colour {to_hex(colour)}"
+        if line.get_marker() not in markers:
+            yield f"no key has the marker {line.get_marker()!r} of colour {to_hex(colour)}"
+        if _pattern(line) not in patterns and not (has_colour and says_lines):
+            yield f"no key has the dashes {_pattern(line)} of colour {to_hex(colour)}"
+
+
+def _lines_of_data(figure: Figure) -> Iterator[Line2D]:
+    """Yield the lines and symbols of all axes, without caps of error bars and full straight
+    lines."""
+    for axes in figure.axes:
+        bars = [part for part in axes.containers if isinstance(part, ErrorbarContainer)]
+        caps = {cap for part in bars for cap in part.lines[1]}
+        for line in axes.lines:
+            is_straight = len(line.get_xdata()) == 2 and line.get_linestyle() == "-"
+            if line.get_visible() and line not in caps and not is_straight:
+                if np.isfinite(line.get_xydata()).all(axis=1).any():
+                    yield line
+
+
+def _pattern(line: Line2D) -> tuple | None:
+    """Return the lengths of dashes and gaps of a line; None without a line, () for a full one."""
+    if line.get_linestyle() == "None":
+        return None
+    return tuple(line._unscaled_dash_pattern[1] or ())
+
+
+def _is_paler(colour: tuple[float, float, float], key: tuple[float, float, float]) -> bool:
+    """Return whether a colour is that of a key, or a mixture of it and white."""
+    left, right = 1.0 - np.array(colour), 1.0 - np.array(key)
+    share = left @ right / (right @ right)
+    return 0.0 < share < 1.01 and np.allclose(left, share * right, atol=0.01)
 
 
 def _hidden_symbols(figure, axes) -> Iterator[str]:

@@ -7,6 +7,7 @@ import pytest
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from PIL import Image
 from slow_cases import slow_but
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
 from tests.show.figures.legibility import faults
@@ -198,6 +199,23 @@ def test_the_order_of_outputs_does_not_change_the_picture(tmp_path):
         style.save(Changing(), [tmp_path / f"figure{kind}" for kind in kinds])
         pictures.append((tmp_path / "figure.png").read_bytes())
     assert pictures[0] == pictures[1]
+
+
+def test_a_palette_keeps_rare_colours(tmp_path):
+    """Among thousands of greys one red symbol stays red, and the background white."""
+    figure = Figure(figsize=(2.0, 2.0))
+    axes = figure.subplots()
+    axes.imshow(np.random.default_rng(3).random((100, 100)), cmap="gray")
+    axes.plot([50], [50], "o", color="#ff0000", markeredgewidth=0)
+    style.save(figure, [tmp_path / "palette.png"])
+    figure.savefig(tmp_path / "full.png")
+    palette, full = (Image.open(tmp_path / f"{name}.png") for name in ("palette", "full"))
+    assert palette.mode == "P" and palette.info["Software"] == "roughgas"
+    drawn, expected = (np.asarray(image.convert("RGB"), int) for image in (palette, full))
+    assert np.abs(drawn - expected).max() <= 24 and (drawn[0, 0] == 255).all()
+    assert (drawn == [255, 0, 0]).all(axis=2).sum() > 20
+    sizes = [(tmp_path / f"{name}.png").stat().st_size for name in ("palette", "full")]
+    assert sizes[0] < 0.7 * sizes[1]
 
 
 def test_points_are_the_data_and_residuals_are_data_minus_theory():

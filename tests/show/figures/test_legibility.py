@@ -15,6 +15,9 @@ FAULTS = {  # change of a legible figure: fault
     "legend(loc='lower left')": "'the legend' is within 0 pt of data",
     "set_xlim(-0.2, 0.8)": "1 points are cut off by the frame",
     "set_ylim(0, 1.2)": "1 points are cut off by the frame",
+    "plot([0.5], [0.0], 'o', color='#ff0000')": "no key has the colour #ff0000",
+    "plot([0.5], [0.0], 'D')": "no key has the marker 'D'",
+    "plot([0.5, 0.6], [0.0, 0.0], ':')": "no key has the dashes (1.0, 1.65)",
 }
 
 
@@ -34,6 +37,15 @@ def figure_with(*changes):
 @pytest.mark.parametrize("change", FAULTS)
 def test_each_fault_is_reported(change):
     assert any(FAULTS[change] in fault for fault in faults(lambda: figure_with(change)))
+
+
+def test_paler_colours_and_lines_that_a_title_explains_have_a_key():
+    """A full straight line, such as the axis at 0, needs none."""
+    pale = "plot([0.5], [0.0], 'o', color='#8fbbd9')"  # half of the first colour, half white
+    dashed = "plot([0.5, 0.6], [0.1, 0.1], '--', color='C0')"
+    title = "get_legend().set_title('lines: theory')"
+    zero = "axhline(-0.15, color='#ff0000')"
+    assert faults(lambda: figure_with(pale, dashed, title, zero)) == []
 
 
 def test_legible_figures_have_no_faults_nor_has_a_declared_hidden_point():

@@ -31,10 +31,10 @@ def test_a_figure_shows_r_beside_theory_and_all_that_is_observed(third):
     columns = 1 if third is None else 2
     assert len(figure.axes) == len(names) * columns
     over = r"$\beta$" if third is None else "speed"
-    title = f"R, fast, squares and profile over {over}, R beside Lun's formula"
+    title = f"$R$, fast, squares and profile over {over}, $R$ beside Lun's formula"
     assert figure.get_suptitle() == title
     assert [axes.get_ylabel() for axes in figure.axes[::columns]] == [
-        *("R", "fast", "squares\n / (a^2 T^-2)", "profile\n / a/T")
+        *("$R$", "fast", "squares\n / (a$^{2}$ T$^{-2}$)", "profile\n / (a/T)")
     ]
 
 
@@ -49,7 +49,7 @@ def test_values_and_their_errors_are_drawn():
         np.testing.assert_allclose(drawn, expected)
         segments = axes.containers[0][2][0].get_segments()
         np.testing.assert_allclose(np.diff(segments, axis=1)[:, 0, 1], 0.02)
-    assert labels(squares) == [f"$r = {r}$, {side}" for r in (0.8, 0.9) for side in "xy"]
+    assert labels(squares) == ["$r = 0.8$", "$r = 0.9$", "x", "y"]
     lines = [line.get_ydata() for line in profile.get_lines()]
     np.testing.assert_allclose(lines, np.outer([0.05, 0.1, 0.15], [0.0, 1.0, 4.0, 9.0]))
     assert labels(profile) == [rf"$\beta = {beta}$" for beta in ("-0.5", "0", "0.5")]
@@ -66,7 +66,9 @@ def test_nine_components_have_nine_markers_and_lines():
     markers = [bars[0].get_marker() for bars in over.containers[:9]]
     styles = [str(line._dash_pattern) for line in height.get_lines()[:9]]
     assert len(set(markers)) == len(set(styles)) == 9
-    assert variables.DOTTED not in {line.get_linestyle() for line in height.get_lines()}
+    assert variables.BENEATH_LINES["linestyle"] not in {
+        line.get_linestyle() for line in height.get_lines()
+    }
 
 
 def test_untrusted_errors_are_paler_and_explained():
@@ -75,7 +77,27 @@ def test_untrusted_errors_are_paler_and_explained():
     (axes,) = variables.draw(observed_sweep(trusted=-1.0), ["fast"]).axes
     assert len(axes.containers) == 4
     (legend,) = axes.figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["paler: the error is not trusted"]
+    assert [text.get_text() for text in legend.get_texts()] == ["paler bars or bands: not trusted"]
+
+
+def test_the_legend_says_what_each_theory_is():
+    """Dashes at the points of a sweep, dots along a profile, and the line of R."""
+    data = observed_sweep()
+    names = "R", "fast", "squares", "profile"
+    theories = {name: data[name] for name in names[1:]}
+    figure = variables.draw(data, names, None, theories)
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    keys = dict(zip(texts, legend.get_lines(), strict=True))
+    dashes, dots = "dashes: theory of fast and squares", "dots: theory of profile"
+    line = "lines: $R$ of Lun's formula"
+    assert list(keys) == [dashes, dots, line]
+    assert keys[dashes].get_marker() == "_" and keys[dots].get_linestyle() == ":"
+    assert keys[line].get_linestyle() == "-"
+    _, fast, _, profile = figure.axes
+    drawn = next(line for line in fast.get_lines() if line.get_marker() == "_")
+    np.testing.assert_allclose(drawn.get_ydata(), [0.05, 0.1, 0.15])
+    assert ":" in {line.get_linestyle() for line in profile.get_lines()}
 
 
 def test_a_line_says_what_is_left_out():

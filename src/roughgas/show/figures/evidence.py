@@ -9,12 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.results.comparison import Row
-from roughgas.show.style import GREY, LINE_STYLES, TWO_WIDE
+from roughgas.show.style import GREY, LINE_STYLES, TWO_WIDE, Style
 from roughgas.statistics.student import t_probability
 
 END, BIN = 6.0, 0.5
 """Largest |t| of the histograms, and width of their bars, in t."""
 TITLE = "$t$, ours minus published in combined standard errors; outermost bars hold all beyond"
+LEGEND_TITLE = "number of rows, and median of $t$:"
+MINUS = "\N{MINUS SIGN}"
 NAMED_ROWS = 20
 """Number of rows in a panel from which a source has a colour of its own."""
 PANELS = {
@@ -29,7 +31,7 @@ def draw(rows: Sequence[tuple[str, Row]]) -> Figure:
     """Return a figure of histograms of t, with the distribution by chance for the errors there are.
 
     `rows` are (study, row) pairs. Rows without chance, such as single contacts, and rows without t
-    are counted in the legend of a panel.
+    are counted in the legend of a panel, which also has the median of t of each source.
     """
     figure = Figure(figsize=(TWO_WIDE, 4.2), layout="constrained")
     panels = figure.subplots(1, len(PANELS))
@@ -52,13 +54,19 @@ def _panel(axes: Axes, rows: Sequence[tuple[str, Row]]) -> None:
         for members in rows_by_source.values()
     ]
     colours = [style.colour for style in LINE_STYLES[: len(samples)]]
-    labels = [f"{name}: {len(members)}" for name, members in rows_by_source.items()]
+    medians = [
+        round(np.median([row.t for row in members]), 1) for members in rows_by_source.values()
+    ]
+    labels = [
+        f"{name}: {len(members)}, {median or 0.0:+.1f}".replace("-", MINUS)
+        for (name, members), median in zip(rows_by_source.items(), medians, strict=True)
+    ]
     if samples:
         axes.hist(
             samples, edges.tolist(), stacked=True, color=colours, label=labels, ec="white", lw=0.3
         )
         chance = expected_counts(np.array([row.gap.dof for _, row in random]), edges)
-        axes.stairs(chance, edges, color=GREY, label="by chance (Student's $t$)", lw=1.2)
+        axes.stairs(chance, edges, color=GREY, label=f"by chance alone: {len(random)}, 0", lw=1.2)
     not_drawn = {
         "without chance": len(certain),
         "without $t$": len(rows) - len(random) - len(certain),
@@ -68,7 +76,9 @@ def _panel(axes: Axes, rows: Sequence[tuple[str, Row]]) -> None:
             axes.plot([], [], " ", label=f"not drawn, {name}: {number}")
     axes.set_xlim(-END, END)
     axes.set_xlabel("$t$")
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.05, -0.16), fontsize=7, borderpad=0)
+    position: Style = {"loc": "upper left", "bbox_to_anchor": (-0.05, -0.16), "borderpad": 0}
+    position |= {"handlelength": 1.0, "handletextpad": 0.5}
+    axes.legend(title=LEGEND_TITLE, title_fontsize=7, fontsize=7, alignment="left", **position)
 
 
 def _by_source(rows: Sequence[tuple[str, Row]]) -> dict[str, list[Row]]:
@@ -84,7 +94,7 @@ def _by_source(rows: Sequence[tuple[str, Row]]) -> dict[str, list[Row]]:
     largest = Counter(names).most_common(len(LINE_STYLES) - 1)
     rows_by_source: dict[str, list[Row]] = {name: [] for name, n in largest if n >= NAMED_ROWS}
     few = len({*names} - {*rows_by_source})
-    rest = f"{few} {'source' if few == 1 else 'sources'} with few rows"
+    rest = f"{few} small {'source' if few == 1 else 'sources'}"
     for name, (_, row) in zip(names, rows, strict=True):
         rows_by_source.setdefault(name if name in rows_by_source else rest, []).append(row)
     return rows_by_source

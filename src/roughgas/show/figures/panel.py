@@ -121,6 +121,15 @@ def series_for_each(
 
 
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
+SYMBOLS = {
+    "r": "r",
+    "beta": r"\beta",
+    "mu": r"\mu",
+    "inertia": "q",
+    "particles": "N",
+    "spin_share": "s",
+}
+"""TeX of the symbols of coordinates."""
 AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
 """Averages of R, by the names of their variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
@@ -128,6 +137,12 @@ DOTS = (0, (1, 2))
 NOT_STEADY: Style = {"markerfacecolor": "white", "zorder": 4}  # above all other symbols
 NOT_KNOWN: Style = {"fillstyle": "bottom", "markerfacecoloralt": "white", "zorder": 4}
 CONTACT_TIME_MARK = "†"
+
+
+def symbol_of(name: str) -> str:
+    """Return the symbol of a coordinate, or else its name in words."""
+    symbol = SYMBOLS.get(name)
+    return f"${symbol}$" if symbol else name.replace("_", " ")
 
 
 class Axis(NamedTuple):
@@ -139,6 +154,7 @@ class Axis(NamedTuple):
     limits: tuple[float, float]
     drawn: tuple[float, float]  # ends of the curves of theory
     logarithmic: bool = False
+    words: Sequence[str] = ()  # of a coordinate of words, which lie at 0, 1, 2, ...
 
     @property
     def grid(self) -> np.ndarray:
@@ -153,10 +169,19 @@ class Axis(NamedTuple):
             axes.set_xscale("log")
         axes.set_xlim(*self.limits)
         span = self.limits[1] - self.limits[0]
-        if not self.logarithmic and span < 4.0:
+        if self.words:
+            axes.set_xticks(range(len(self.words)), [w.replace("_", "\n") for w in self.words])
+            axes.xaxis.minorticks_off()
+        elif not self.logarithmic and span < 4.0:
             step = 0.5 if span > 2.0 else 0.2
             axes.xaxis.set_major_locator(MultipleLocator(step))
             axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
+
+    def range_text(self, positions: np.ndarray) -> str:
+        """Return the range of the coordinate at some horizontal positions, (n,), as text."""
+        ends = [positions.min(), positions.max()]
+        texts = [self.words[int(x)] if self.words else f"${x:g}$" for x in ends]
+        return f"{symbol_of(self.name)} {' to '.join(dict.fromkeys(texts))}"
 
 
 BETA = Axis("beta", r"roughness $\beta$", (-1.06, 1.06), (-1, 1))
@@ -167,8 +192,15 @@ SPIN_SHARE = Axis("spin_share", SHARE_LABEL, (-0.03, 1.03), (0, 1))
 ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))
 
 
+class Row(NamedTuple):
+    """A row of residuals: an average of R, a key of AVERAGES, and the series that set its scale."""
+
+    average: str = "R"
+    scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
+
+
 class Panel(NamedTuple):
-    """Axes of a panel: R above, and beneath a row of residuals for each average of R."""
+    """Axes of a panel: R above, and beneath it rows of residuals."""
 
     main: Axes
     residuals: Sequence[Axes]
@@ -190,8 +222,6 @@ class PanelContent(NamedTuple):
     axis: Axis = BETA
     message: str = ""  # the conclusion, above the title
     room: float = 0.0  # empty space beneath the points, as a share of their height
-    # selects the series that set the scale of residuals
-    scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
     # draws additions of this figure
     extra: Callable[[Panel, Sequence[Series]], None] = lambda panel, drawn: None
 
@@ -215,23 +245,23 @@ def content_for_each_beta(
 
 
 def ratio_figure(
-    *contents: PanelContent, width: float = WIDTH, averages: Sequence[str] = ("R",)
+    *contents: PanelContent, width: float = WIDTH, rows: Sequence[Row] = (Row(),)
 ) -> Figure:
-    """Return a figure of panels side by side, one for each of `contents`: points, theory,
+    """Return a figure of panels side by side, one for each of `contents`: points, theory, `rows` of
     residuals, legends, titles.
 
-    `width` is in inches. There is a row of residuals for each of `averages`, names in AVERAGES.
+    `width` is in inches.
     """
-    figure, panels = ratio_panels([content.axis for content in contents], width, averages)
+    figure, panels = ratio_panels([content.axis for content in contents], width, rows)
     for content, panel in zip(contents, panels, strict=True):
-        draw_series(panel, content.drawn, averages)
+        draw_series(panel, content.drawn, rows)
         draw_theory(
             panel,
             content.drawn[:1] if content.theory else content.drawn,
             black=bool(content.theory),
         )
         content.extra(panel, content.drawn)
-        frame_rows(panel, content.drawn, content.scale(content.drawn), averages)
+        frame_rows(panel, content.drawn, rows)
         add_title(panel.main, content.data, content.title, content.message)
     explained: set[str] = set()
     for content, panel in zip(contents, panels, strict=True):
@@ -248,6 +278,11 @@ def ratio_figure(
     return figure
 
 
+def rows_of(data: xr.Dataset) -> list[Row]:
+    """Return a row of residuals for each average of R that theory describes (`averages_of`)."""
+    return [Row(average) for average in averages_of(data)]
+
+
 def averages_of(data: xr.Dataset) -> list[str]:
     """Return the names of the averages of R in a reduced dataset that theory describes.
 
@@ -257,17 +292,17 @@ def averages_of(data: xr.Dataset) -> list[str]:
 
 
 def ratio_panels(
-    axes: Sequence[Axis], width: float = WIDTH, averages: Sequence[str] = ("R",)
+    axes: Sequence[Axis], width: float = WIDTH, rows: Sequence[Row] = (Row(),)
 ) -> tuple[Figure, list[Panel]]:
     """Return an empty figure, and its panels side by side, one for each of `axes`, their horizontal
-    axes; all share the scale of R.
+    axes, with `rows` of residuals; all share the scale of R.
 
-    `width` is in inches. There is a row of residuals for each of `averages`, names in AVERAGES.
+    `width` is in inches.
     """
-    rows = len(averages)
-    figure = Figure(figsize=(width, HEIGHT + rows - 1), layout="constrained")
+    figure = Figure(figsize=(width, HEIGHT + len(rows) - 1), layout="constrained")
+    heights = 2.3, *(1.0 for _ in rows)
     axes_grid = figure.subplots(
-        1 + rows, len(axes), sharex="col", height_ratios=(2.3, *[1.0] * rows), squeeze=False
+        len(heights), len(axes), sharex="col", height_ratios=heights, squeeze=False
     )
     axes_grid[0, 0].set_ylabel(ENERGY_RATIO)
     panels = [Panel(*column) for column in zip(axes_grid[0], axes_grid[1:].T, axes, strict=True)]
@@ -295,51 +330,50 @@ def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> N
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(panel: Panel, drawn: Sequence[Series], averages: Sequence[str] = ("R",)) -> None:
-    """Draw into `panel` the points of each series in `drawn` with error bars, and their residuals
-    beneath, a row for each of `averages`."""
+def draw_series(panel: Panel, drawn: Sequence[Series], rows: Sequence[Row] = (Row(),)) -> None:
+    """Draw into `panel` the points of each series in `drawn` with error bars, and `rows` of their
+    residuals beneath."""
     for index, curve in enumerate(drawn):
         size = 4.2 - 0.3 * index  # later symbols hide no earlier ones
         draw_points(panel.main, curve, curve.x, curve.data.R.values, size)
-        for average, residual in zip(averages, panel.residuals, strict=True):
+        for (average, _), residual in zip(rows, panel.residuals, strict=True):
             if average in curve.data:
                 draw_points(
                     residual, curve, curve.x, curve.residual_of(average), size - 0.6, average
                 )
 
 
-def frame_rows(
-    panel: Panel, drawn: Sequence[Series], scale: Sequence[Series], averages: Sequence[str]
-) -> None:
-    """Set the limits of the rows of residuals, a row for each of `averages`, and write their
-    titles.
+def frame_rows(panel: Panel, drawn: Sequence[Series], rows: Sequence[Row]) -> None:
+    """Set the limits of the `rows` of residuals of the series in `drawn`, and write their titles.
 
-    The limits span the steady points of the series in `scale`. A title has the average of R, and
-    the number of points of the series in `drawn` outside of the limits.
+    The limits span the steady points of the series in the scale of a row. A title has the average
+    of R, if rows differ in it, and number and place of the points outside of the limits.
     """
     heights = []
-    for average, residual in zip(averages, panel.residuals, strict=True):
-        residuals = np.concatenate(
-            [curve.residual_of(average) for curve in drawn if average in curve.data]
-        )
-        low, high = _residual_limits(residuals, scale, average)
+    for row, residual in zip(rows, panel.residuals, strict=True):
+        shown = [curve for curve in drawn if row.average in curve.data]
+        x = np.concatenate([curve.x for curve in shown])
+        residuals = np.concatenate([curve.residual_of(row.average) for curve in shown])
+        low, high = _residual_limits(residuals, row.scale(shown), row.average)
         residual.set_ylim(low, high)
         heights.append(high - low)
-        outside = {"above": np.sum(residuals > high), "below": np.sum(residuals < low)}
-        notes = [f"{n} point{'s' if n > 1 else ''} {side}" for side, n in outside.items() if n]
-        if notes:
-            note = f"{', '.join(notes)} this scale"
-            residual.set_title(note, fontsize=7, color=GREY, loc="right", pad=2)
-        if len(averages) > 1:
-            finer = ", finer scale" if heights[-1] < 0.8 * heights[0] else ""
-            residual.set_title(f"{AVERAGES[average]}{finer}", fontsize=7.5, loc="left", pad=2)
+        notes = [
+            f"{outside.sum()} point{'s' if outside.sum() > 1 else ''} {side} this scale,"
+            f" {panel.axis.range_text(x[outside])}"
+            for side, outside in (("above", residuals > high), ("below", residuals < low))
+            if outside.any()
+        ]
+        residual.set_title("\n".join(notes), fontsize=7, color=GREY, loc="right", pad=5)
+        words = [AVERAGES[row.average]] if len({average for average, _ in rows}) > 1 else []
+        words += ["finer scale"] if heights[-1] < 0.8 * heights[0] else []
+        residual.set_title(", ".join(words), fontsize=7.5, loc="left", pad=5)
 
 
 def _residual_limits(residuals, scale, average) -> tuple[float, float]:
     """Return the limits (low, high) of a row of residuals (an array): they span the steady points
     of the series in `scale` with the errors of `average`, and cut through no symbol."""
     low, high = -0.005, 0.005
-    for curve in (curve for curve in scale if average in curve.data):
+    for curve in scale:
         deviation, error = curve.residual_of(average), np.nan_to_num(curve.error_of(average))
         low = np.nanmin((deviation - error)[curve.steady], initial=low)
         high = np.nanmax((deviation + error)[curve.steady], initial=high)
@@ -426,9 +460,15 @@ def key_of_trust() -> Line2D:
     return key(GREY, "paler: the error is not trusted", "o", **NOT_TRUSTED)
 
 
-def add_title(main: Axes, datasets: Sequence[xr.Dataset], subject: str, message: str = "") -> None:
+def add_title(
+    main: Axes,
+    datasets: Sequence[xr.Dataset],
+    subject: str,
+    message: str = "",
+    errors_as: str = "Bars",
+) -> None:
     """Write a title above the axes `main`: the subject, the number of particles and the meaning of
-    error bars of `datasets` (reduced), and the message above it."""
+    the errors of `datasets` (reduced), drawn as bars or bands, and the message above it."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
@@ -436,7 +476,7 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], subject: str, message:
     attributes = datasets[0].attrs
     scale = "" if attributes["scale"] == "paper" else f"\nScale: {attributes['scale']}"
     number = particles_of(datasets[0]).replace(" to ", "$ to $")
-    text = f"{subject}, $N = {number}$\nBars: {bars}{scale}"
+    text = f"{subject}, $N = {number}$\n{errors_as}: {bars}{scale}"
     main.set_title(text, fontsize=7.5, loc="left")
     if message:
         coordinates: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}

@@ -7,7 +7,8 @@ show by coordinate (r, beta).
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from matplotlib.patches import Patch
 from roughgas.base import InputError, Record, unknown_name_error
 from roughgas.data.netcdf import unit_of
 from roughgas.data.reduced import GRID_DIMS
-from roughgas.data.variables import CLOCKS, ENERGY, START, third_axis
+from roughgas.data.variables import CLOCKS, third_axis
 from roughgas.show.figures import panel
 from roughgas.show.figures.panel import series
 from roughgas.show.style import GREY, HEIGHT, LINE_STYLES, THEORY, TWO_WIDE, WIDTH, Style
@@ -27,7 +28,7 @@ from roughgas.statistics.errors import block_means
 from roughgas.statistics.estimates import Estimate
 from roughgas.theory.prediction import equation_of
 
-MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 3
+MAX_SERIES, MAX_PANELS = len(LINE_STYLES), 2  # panels that fit on a page
 AXES = {axis.name: axis for axis in (panel.BETA, panel.FRICTION, panel.INERTIA, panel.ROUGHNESS)}
 LABELS = {
     "r": "normal restitution $r$",
@@ -45,7 +46,6 @@ UNITS_OF_SETTINGS = (
     | {"acceleration": "a/T^2", "mass": "m"}
 )
 """Units of settings that a sweep may vary, by key; effects agree on them."""
-SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
 MARGIN = 0.08  # beside the data, as a share of the axis
 LEGEND_WIDTH = 1.6  # inches, beside the panels
 WIDE_RANGE = 20.0  # ratio of largest to smallest value above which an axis is logarithmic
@@ -72,19 +72,17 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     numeric, axis = with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections = [{layout.panels: value} if layout.panels else {} for value in panels]
-    width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
+    is_single = len(panels) == 1
     if "R" not in data:
+        width = WIDTH if is_single else TWO_WIDE
         return _energy_figure(numeric, layout, axis, selections, width)
     contents = [
         _panel_content(numeric, layout, axis, selection, selection is selections[-1])
         for selection in selections
     ]
     contents[0] = contents[0]._replace(message=message_of(numeric, "R", layout.over))
-    figure = panel.ratio_figure(
-        *contents, width=width + LEGEND_WIDTH, averages=panel.averages_of(numeric)
-    )
-    label_words(figure.axes, data, layout.over)
-    return figure
+    width = WIDTH + LEGEND_WIDTH if is_single else TWO_WIDE
+    return panel.ratio_figure(*contents, width=width, rows=panel.rows_of(numeric))
 
 
 def layout_of(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]) -> Layout:
@@ -145,7 +143,7 @@ def with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Ax
     if values.dtype.kind not in "fiu":
         limits = -0.5, len(values) - 0.5
         numbered = data.assign_coords({over: np.arange(len(values))})
-        return numbered, panel.Axis(over, label, limits, limits)
+        return numbered, panel.Axis(over, label, limits, limits, words=values.tolist())
     if over == "beta":
         return data, panel.BETA
     low, high = float(values.min()), float(values.max())
@@ -163,17 +161,6 @@ def with_numeric_axis(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Ax
 def _label_of_setting(name: str) -> str:
     """Return the label of an axis over a setting: its name in words, and its unit."""
     return name.replace("_", " ") + _suffix_of(UNITS_OF_SETTINGS.get(name, ""))
-
-
-def label_words(panels: Iterable[Axes], data: xr.Dataset, over: str) -> None:
-    """Label the horizontal axes of `panels` with the words of the coordinate `over`, in place of
-    their numbers."""
-    words = data[over].values
-    if words.dtype.kind in "fiu":
-        return
-    for axes in panels:
-        axes.set_xticks(range(len(words)), [word.replace("_", "\n") for word in words])
-        axes.xaxis.minorticks_off()
 
 
 def _panel_content(
@@ -222,13 +209,7 @@ def message_of(data: xr.Dataset, quantity: str, over: str) -> str:
     """Return the title of a figure, which names what is drawn: a quantity over the coordinate
     `over`, and the theory if the quantity is R."""
     theory = equation_of(data.attrs).name if quantity == "R" else ""
-    return f"{quantity} over {name_of_axis(over)}" + (f", beside {theory}" if theory else "")
-
-
-def name_of_axis(name: str) -> str:
-    """Return a coordinate's symbol, or else its name, for a title."""
-    symbol = SYMBOLS.get(name)
-    return f"${symbol}$" if symbol else name.replace("_", " ")
+    return f"{quantity} over {panel.symbol_of(over)}" + (f", beside {theory}" if theory else "")
 
 
 def title_of_panel(data: xr.Dataset, selection: Record) -> str:
@@ -237,6 +218,8 @@ def title_of_panel(data: xr.Dataset, selection: Record) -> str:
     An experiment of a study is called by its key, and by the study unless this has the same name.
     """
     study, _, key = data.attrs["experiment"].rpartition(".")
+    if re.fullmatch(r"\D+_\d{4}", study):  # authors and year
+        study = study.title()
     name = (key if study in ("", key) else f"{study}: {key}").replace("_", " ")
     return ", ".join(
         [
@@ -250,7 +233,7 @@ def label_of(name: str, value: Any) -> str:
     """Return a coordinate's name and value as a label; a value that is a word stands alone."""
     if isinstance(value, str):
         return value.replace("_", " ")
-    symbol = SYMBOLS.get(name)
+    symbol = panel.SYMBOLS.get(name)
     return rf"${symbol} = {value:g}$" if symbol else f"{name.replace('_', ' ')} {value:g}"
 
 
@@ -263,7 +246,6 @@ TIME_SERIES_SIZE, OBSERVABLE_SIZE = (6.0, 4.6), (6.0, 3.2)  # inches
 MAX_TIMES = 400  # of a line; longer series are drawn as means over blocks
 WINDOW_COLOUR = "#eeeeee"
 ENERGIES = {"E_trans": r"$E_\mathrm{trans}$", "E_rot": r"$E_\mathrm{rot}$"}
-UNITS = {START: r"initial $E_\mathrm{trans}$", ENERGY: r"($m a^2/T^2$)"}
 TRUST_NOTES = {0: ", not trusted", -1: ", whether to trust it is not known"}
 
 
@@ -338,8 +320,7 @@ def _energies_over_time(axes: Axes, point, times, block, cooling) -> None:
                 "linewidth": 0.9,
             }
             axes.plot(block_means(times, block), values, label=label, **style)
-    unit = UNITS.get(unit_of(point.E_trans.attrs), "1")
-    axes.set_ylabel(f"energy per degree of\nfreedom / {unit}")
+    axes.set_ylabel(f"energy per degree of\nfreedom{unit_suffix(point.E_trans)}")
     axes.set_yscale("log" if cooling else "linear")
     if axes.lines:  # a shortened dataset may lack them
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
@@ -386,12 +367,9 @@ def draw_observed(point: xr.Dataset, name: str) -> Figure:
             label=line_label(values, index),
         )
         draw_errors(axes, coordinate, line, error, trusted[index], line_style.colour)
-    coordinate_label, variable_label = (
-        variable.replace("_", " ") for variable in (axis, name.removesuffix("_species"))
-    )
     axes.set(
-        xlabel=f"{coordinate_label}{unit_suffix(point[axis])}",
-        ylabel=f"{variable_label}{unit_suffix(values)}",
+        xlabel=f"{symbol_of_variable(axis)}{unit_suffix(point[axis])}",
+        ylabel=f"{symbol_of_variable(name.removesuffix('_species'))}{unit_suffix(values)}",
     )
     axes.set_title(title_of_point(point), fontsize=8)
     if values.ndim > 1:
@@ -442,6 +420,15 @@ def line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
     return ", ".join(str(values[n].values[k]) if n in values.coords else str(k) for n, k in pairs)
 
 
+def symbol_of_variable(name: str) -> str:
+    """Return the symbol of a variable, such as a20 with indices, or else its name in words."""
+    if name in ENERGIES:
+        return ENERGIES[name]
+    if name == "R":
+        return "$R$"
+    return re.sub(r"^a(\d\d)\b", r"$a_{\1}$", name.replace("_", " "))
+
+
 def unit_suffix(values: xr.DataArray) -> str:
     """Return the unit of a variable as the end of an axis label, such as " / a"; "" without a
     unit."""
@@ -449,5 +436,8 @@ def unit_suffix(values: xr.DataArray) -> str:
 
 
 def _suffix_of(unit: str) -> str:
-    """Return a unit as the end of an axis label; "" for a pure number."""
-    return "" if unit in ("", "1") else f" / ({unit})" if " " in unit else f" / {unit}"
+    """Return a unit, with superscripts, as the end of an axis label; "" for a pure number."""
+    if unit in ("", "1"):
+        return ""
+    text = re.sub(r"\^(-?\w+)", r"$^{\1}$", unit).replace("E_trans", ENERGIES["E_trans"])
+    return f" / ({text})" if {" ", "/"} & {*unit} else f" / {text}"

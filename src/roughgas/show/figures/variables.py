@@ -26,8 +26,10 @@ from roughgas.show.figures import panel, sweep
 from roughgas.show.style import GREY, LINE_STYLES, TWO_WIDE, WIDTH, LineStyle, Style
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
-DOTTED = ":"
-"""Style of the theory of a variable along its own coordinate."""
+BESIDE_POINTS: Style = {"marker": "_", "linestyle": "none", "ms": 11, "mew": 1.2}
+BENEATH_LINES: Style = {"marker": "", "linestyle": ":", "lw": 2.6}
+"""Styles of theory of a variable: dashes at the points of a sweep, since it is not known between
+them, and dots along its own coordinate, wider than the line on them."""
 THEORY = "_theory"
 """End of the names of variables that hold theory beside a variable."""
 DECADES = 3
@@ -43,7 +45,7 @@ COMPONENT_STYLES = (
 )
 """Markers and lines of the components of a variable, which have the colour of their series; a
 variable with more components is drawn in part."""
-ROW_HEIGHT, TITLE_HEIGHT = 1.9, 0.7  # inches
+ROW_HEIGHT, TITLE_HEIGHT = 1.75, 0.75  # inches: MAX_ROWS fit on a page
 LETTERS_PER_INCH = 13  # of the title
 
 
@@ -105,8 +107,7 @@ def draw(
     numeric, axis = sweep.with_numeric_axis(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     selections: list[Record] = [{layout.panels: value} if layout.panels else {} for value in panels]
-    one_wide = WIDTH + sweep.LEGEND_WIDTH
-    width = one_wide if len(panels) == 1 else max(TWO_WIDE, 0.5 * TWO_WIDE * len(panels))
+    width = WIDTH + sweep.LEGEND_WIDTH if len(panels) == 1 else TWO_WIDE
     size = width, TITLE_HEIGHT + ROW_HEIGHT * len(names)
     beside_legends = 0.0, 0.0, 1.0 - sweep.LEGEND_WIDTH / width, 1.0
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=beside_legends))
@@ -117,10 +118,9 @@ def draw(
                 _draw_along(axes, data, name, coordinate, layout, selection)
             else:
                 _draw_over(axes, numeric, name, axis, layout, selection)
-                sweep.label_words([axes], data, layout.over)
         if _spans_decades(data[name]):
             row[0].set_yscale("log")  # of the whole row, which shares the axis
-        label = name.replace("_", " ")
+        label = sweep.symbol_of_variable(name)
         row[0].set_ylabel(f"{label}\n{sweep.unit_suffix(data[name])}".rstrip(), fontsize=8)
         legend = row[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
         legend.set_in_layout(False)  # beside the last column, whose width it leaves alone
@@ -130,20 +130,31 @@ def draw(
     figure.suptitle("\n".join(message), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     figure.align_ylabels()
     if keys := [*_keys_of_theory(data, names), *_keys_of_trust(data, names)]:
-        figure.legend(handles=keys, loc="outside lower right", ncols=len(keys))
+        figure.legend(handles=keys, loc="outside lower right", ncols=min(len(keys), 2))
     return figure
 
 
 def _keys_of_theory(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
-    """Return a legend key for each style of the lines of theory beside variables."""
-    styles = {DOTTED if _coordinate(data, name) else "-" for name in names if name + THEORY in data}
-    return [panel.key(GREY, "theory", "", style) for style in sorted(styles)]
+    """Return a legend key for each style of theory, which names the variables or the equation."""
+    known = [name for name in names if name + THEORY in data]
+    along = [name for name in known if _coordinate(data, name)]
+    over = [name for name in known if name not in along]
+    styles = (("dashes", over, BESIDE_POINTS), ("dots", along, BENEATH_LINES))
+    keys = [
+        Line2D([], [], color=GREY, label=f"{mark}: theory of {_listed(group)}", **style)
+        for mark, group, style in styles
+        if group
+    ]
+    if "R" in names and "R" not in known and _has_theory(data):
+        keys.append(panel.key(GREY, f"lines: $R$ of {equation_of(data.attrs).name}", "", "-"))
+    return keys
 
 
 def _keys_of_trust(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
     """Return a legend key of errors that are not trusted; [] if all are."""
     all_trusted = all(panel.trusted(data, name).all() for name in names)
-    return [] if all_trusted else [panel.key_of_trust()]
+    label = "paler bars or bands: not trusted"
+    return [] if all_trusted else [panel.key(GREY, label, "|", ms=9, **panel.NOT_TRUSTED)]
 
 
 def _coordinate(data: xr.Dataset, name: str) -> str | None:
@@ -165,22 +176,29 @@ def _draw_over(
 ) -> None:
     """Draw a variable with error bars over an axis of the sweep, at the `selection` of a panel.
 
-    R is drawn with the lines of theory.
+    R is drawn with the lines of theory. Components have the colour of their series, and a key each.
     """
     axis.prepare(axes)
+    components: dict[str, str] = {}
     for value, style in zip(layout.values[layout.series], LINE_STYLES, strict=False):
         label = sweep.label_of(layout.series, value)
         row = data.sel({layout.series: value, **selection})
         if name + THEORY in data:
             for line, *_ in _lines(row, name + THEORY, layout.over):
-                axes.plot(row[layout.over].values, line, color=style.colour, lw=0.9, zorder=1)
+                common: Style = {"color": style.colour, "zorder": 1}
+                axes.plot(row[layout.over].values, line, **common, **BESIDE_POINTS)
         elif name in panel.averages_of(data):
             curve = panel.series(data, label, style, **{layout.series: value}, **selection)
             panel.draw_theory(panel.Panel(axes, (), axis), [curve])
         for line, error, trusted, text, inner in _lines(row, name, layout.over):
             marked = style._replace(marker=inner.marker) if text else style
-            text = ", ".join(filter(None, (label, text)))
-            _draw_bars(axes, row[layout.over].values, line, error, trusted, marked, text)
+            components |= {text: inner.marker} if text else {}
+            name_of_bars = "" if text else label
+            _draw_bars(axes, row[layout.over].values, line, error, trusted, marked, name_of_bars)
+        if components:
+            axes.plot([], [], color=style.colour, lw=4, label=label)
+    for text, marker in components.items():
+        axes.plot([], [], marker, color=GREY, ms=3.6, label=text)
 
 
 def _draw_bars(axes: Axes, x, values, errors, trusted, style: LineStyle, label: str) -> None:
@@ -221,8 +239,8 @@ def _draw_along(
             sweep.draw_errors(axes, x, line, error, trusted, style.colour)
         if name + THEORY in data:
             for line, *_ in _lines(row, name + THEORY, coordinate):
-                axes.plot(x, line, color=style.colour, lw=1.6, ls=DOTTED, zorder=1)
-    label = coordinate.replace("_", " ")
+                axes.plot(x, line, color=style.colour, zorder=1, **BENEATH_LINES)
+    label = sweep.symbol_of_variable(coordinate)
     axes.set_xlabel(f"{label}{sweep.unit_suffix(data[coordinate])}")
 
 
@@ -247,15 +265,21 @@ def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theori
 
     Variables with `theories` of a study stand beside these, R without one beside the package's.
     """
-    *first, last = (name.replace("_", " ") for name in names)
-    text = f"{', '.join(first)} and {last}" if first else last
+    text = _listed(names)
+    text = text[0].upper() + text[1:]
     if all(name in theories for name in names):
-        return f"{text} over {sweep.name_of_axis(over)}, beside theory"
-    known = [name.replace("_", " ") for name in names if name in theories]
-    beside = [f"{' and '.join(known)} beside theory"] if known else []
+        return f"{text} over {panel.symbol_of(over)}, beside theory"
+    known = [name for name in names if name in theories]
+    beside = [f"{_listed(known)} beside theory"] if known else []
     if "R" in names and "R" not in theories and _has_theory(data):
-        beside.append(f"R beside {equation_of(data.attrs).name}")
-    return ", ".join([f"{text} over {sweep.name_of_axis(over)}", *beside])
+        beside.append(f"$R$ beside {equation_of(data.attrs).name}")
+    return ", ".join([f"{text} over {panel.symbol_of(over)}", *beside])
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return the symbols of variables as a list in words."""
+    *first, last = map(sweep.symbol_of_variable, names)
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _spans_decades(values: xr.DataArray) -> bool:
