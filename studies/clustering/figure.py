@@ -167,11 +167,11 @@ def share(axes: Axes, film: xr.Dataset) -> None:
 
 def unevenness(axes: Axes, film: xr.Dataset) -> None:
     maps = [packing(film, frame) for frame in range(film.sizes["frame"])]
-    axes.plot(
-        collisions_so_far(film), [field.std() / field.mean() for field in maps], color=UNEVENNESS
-    )
+    contrast = [field.std() / field.mean() for field in maps]
+    axes.plot(collisions_so_far(film), contrast, color=UNEVENNESS, label="this gas")
     axes.set(xlabel=PER_PARTICLE, ylabel=r"$\delta\phi/\phi$", ylim=(0, None))
     axes.set_title("g   uneven packing", loc="left", fontsize=TITLE)
+    axes.legend()
 
 
 def collisions_label(film: xr.Dataset, frame: int) -> str:

@@ -32,6 +32,7 @@ from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
 
 SINGLE_ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
 SPANS_OF_EXTENT = 3.0  # for which paths stay within State.clock[EXTENT]
+MAX_HEATING = 2.0**10  # of the typical speed within a span, beyond which horizons stay as they are
 FASTEST = 5.0  # speed of the fastest particle relative to a typical partner's, roughly
 ROUNDED_UP = 1.0 + 2.0**-20  # factor that makes a number in single precision an upper bound
 
@@ -101,7 +102,7 @@ def _speed_of_partners(state, scene):
     speed = 2.0 * clock[TYPICAL_SPEED]
     if _may_heat_up(scene.effects):
         fastest = clock[EXTENT] / (SPANS_OF_EXTENT * clock[SPAN])
-        speed = max(speed, fastest / FASTEST)
+        speed = max(speed, min(fastest / FASTEST, MAX_HEATING * clock[TYPICAL_SPEED]))
     return speed
 
 
