@@ -40,9 +40,9 @@ RESERVED = frozenset(
     everything evidence evidence_long explore explore_extensions extensions family fig1a fig1b fig2a
     fig2b figure figure_of_evidence figures front hard_cases hard_cases_chaos hard_cases_collapse
     hard_cases_cooling living living_page long_table movie movies numbers page page_of_evidence
-    page_of_verdicts paper papers picture_for_talks pictures plot point quoted_by_documentation quoted_numbers reduce
-    report rows_of_evidence run_times run_times_extensions study_evidence study_movie study_page
-    study_slides table table_of_extensions table_of_papers task verdicts
+    page_of_verdicts paper papers picture_for_talks pictures plot point quoted_by_documentation
+    quoted_numbers reduce report rows_of_evidence run_times run_times_extensions study_evidence
+    study_movie study_page study_slides table table_of_extensions table_of_papers task verdicts
     """.split()
 )
 """Names forbidden for experiments: the workflow has rules and products called so."""
