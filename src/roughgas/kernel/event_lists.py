@@ -32,7 +32,7 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 
-PREFETCHED = 14  # entries of a particle's neighbour list, about all of them
+PREFETCHED = 10  # entries of a neighbour list, most of them
 FIT_IN_CACHE = 2048  # days of a calendar: prefetching gains nothing for fewer
 FLIGHTS_AHEAD = 2.5  # mean free flights within the horizon
 LAST_DAY = 2.0**62
