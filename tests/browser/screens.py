@@ -15,8 +15,8 @@ CONTRASTS = """
       return 0.2126 * r + 0.7152 * g + 0.0722 * b;
     };
     const behind = element => {
-      for (let one = element; one; one = one.parentElement) {
-        const colour = getComputedStyle(one).backgroundColor, [, , , alpha] = rgb(colour);
+      for (let box = element; box; box = box.parentElement) {
+        const colour = getComputedStyle(box).backgroundColor, [, , , alpha] = rgb(colour);
         if (alpha === undefined || alpha === 1) return colour;
       }
       return "rgb(255, 255, 255)";
@@ -36,12 +36,14 @@ CONTRASTS = """
 @contextmanager
 def emulated_screen(page, width, height, mobile=True, scheme="light"):
     """Show a page of the browser on a screen of this size in pixels, with a colour scheme."""
-    size = {"width": width, "height": height, "deviceScaleFactor": 1 + mobile, "mobile": mobile}
+    size = {"width": width, "height": height, "screenWidth": width, "screenHeight": height}
+    size |= {"deviceScaleFactor": 1 + mobile, "mobile": mobile}
     page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     preference = {"name": "prefers-color-scheme", "value": scheme}
     page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [preference]})
     try:
-        page.wait(lambda: page.script("return innerWidth") == width)
+        # a wide page of the test before would have another innerWidth
+        page.wait(lambda: page.script("return screen.width") == width)
         yield
     finally:
         page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
@@ -52,7 +54,7 @@ def boxes(page, selector):
     """Return the rectangles of all elements that match a CSS selector, in pixels of the window."""
     return page.script(
         """return [...document.querySelectorAll(arguments[0])]
-        .map(one => one.getBoundingClientRect().toJSON())""",
+        .map(element => element.getBoundingClientRect().toJSON())""",
         selector,
     )
 
