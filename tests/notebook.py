@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 
 NOTEBOOK = Path(__file__).parents[1] / "docs" / "tutorial.ipynb"
-KEPT = ("text/plain", "image/png")
+OUTPUT_FORMS = ("text/plain", "image/png")
 """Forms of an output that are kept: HTML of datasets has random identifiers."""
 
 
@@ -34,7 +34,9 @@ def kept_outputs(cell):
             if output["name"] == "stdout":
                 outputs.append({**output, "text": text_of(output["text"])})
             continue
-        data = {form: text_of(output["data"][form]) for form in KEPT if form in output["data"]}
+        data = {
+            form: text_of(output["data"][form]) for form in OUTPUT_FORMS if form in output["data"]
+        }
         if "".join(data.values()):
             outputs.append({**output, "data": data, "metadata": {}})
     return outputs

@@ -28,7 +28,6 @@ from roughgas.show.figures.panel import (
     add_legend,
     add_notes,
     add_title,
-    averages_of,
     content_for_each_beta,
     content_for_each_r,
     draw_points,

@@ -15,7 +15,7 @@ SKEWED, STRIPED = 0.4, 2.25
 sine, 1.5, and of random waves, 3."""
 
 
-def seen(panel: Panel, layer: xr.Dataset) -> str:
+def appearance(panel: Panel, layer: xr.Dataset) -> str:
     """Return the name of what a picture shows, for a panel of the published figure."""
     waves = room(panel, layer)
     if waves < ENOUGH_WAVES:

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from roughgas.plotting import FAINT, LINE_STYLES, TWO_WIDE, judged_title
 
+from .appearance import appearance, clearest, pictured
 from .ball import flights
 from .published import (
     CYCLES,
@@ -34,7 +35,6 @@ from .published import (
     side,
     wavelength,
 )
-from .seen import clearest, pictured, seen
 
 PICTURE, CAPTION = 6.6, 1.05  # inches: sum of the widths of a row's pictures, height of texts
 LETTERS_PER_INCH, NO_BREAK = 18, "\N{NO-BREAK SPACE}"
@@ -142,7 +142,7 @@ def _draw_picture(axes: Axes, panel: Panel, layer: xr.Dataset) -> None:
     """Draw the mean height at its clearest phase, for panel d one cycle later, with what is seen
     there above, and what is published below."""
     axes.set(xticks=[], yticks=[])
-    axes.set_title(f"({panel.panel}) {seen(panel, layer)}", fontsize=7.5, loc="left")
+    axes.set_title(f"({panel.panel}) {appearance(panel, layer)}", fontsize=7.5, loc="left")
     heights = pictured(panel, layer).T
     low, high = np.percentile(heights, GREYS)
     axes.imshow(heights, vmin=low, vmax=high, **GREY_SCALE)

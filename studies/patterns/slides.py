@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 
 from roughgas.plotting import GREY, LINE_STYLES, THEORY
 
+from .appearance import appearance
 from .ball import CYCLE, ball_heights, flights
 from .figure import draw_cycles, draw_height, measured_text, published_text, size_text
 from .published import CYCLES, Panel, panels, panels_in
-from .seen import seen
 
 WIDTH, HEIGHT, LAYER_HEIGHT = 5.0, 3.6, 2.7  # inches: letters are legible on a phone
 FLOOR_BOTTOM = -1.2  # amplitudes of the floor
@@ -51,7 +51,7 @@ def draw(layers: xr.Dataset, large: xr.Dataset) -> Iterator[tuple[str, str, Figu
             measured=measured_text(panel, layer),
         )
         yield (
-            f"({', '.join(panel.panel for panel in case_panels)}) {seen(panel, layer)}",
+            f"({', '.join(panel.panel for panel in case_panels)}) {appearance(panel, layer)}",
             text,
             _draw_layer(layer),
         )

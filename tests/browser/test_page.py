@@ -159,11 +159,11 @@ def test_either_average_can_be_plotted(page, finished_run):
 def test_energies_have_units(page):
     labels = """return [PLOTS.energies.axes[1].label,
         [...document.querySelectorAll("#energies .u-label")].map(one => one.textContent)];"""
-    parts = ["time in T", "translation, E_trans", "rotation, E_rot"]
-    assert page.script(labels) == ["energy / (m a²/T²)", parts]
+    labels_of_series = ["time in T", "translation, E_trans", "rotation, E_rot"]
+    assert page.script(labels) == ["energy / (m a²/T²)", labels_of_series]
     select(page, "experiment", "cooling")
-    parts[0] = "collisions per particle"
-    assert page.script(labels) == ["energy / initial E_trans", parts]
+    labels_of_series[0] = "collisions per particle"
+    assert page.script(labels) == ["energy / initial E_trans", labels_of_series]
 
 
 def test_a_choice_can_be_shared(finished_run, browser):

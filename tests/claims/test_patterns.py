@@ -127,7 +127,7 @@ def directions(*angles):
 
 RIGHT, SIXTH = np.pi / 2, np.pi / 3
 DOMAINS = np.where(np.arange(100)[:, np.newaxis] < 50, directions(0.0), directions(RIGHT))
-SEEN = {
+WAVES_BY_NAME = {
     "straight stripes": (directions(0.3), (0.9, 0.1, 0.1)),
     "bent stripes": (DOMAINS, (0.3, 0.3, 0.1)),
     "squares": (directions(0.0, RIGHT), (0.1, 0.8, 0.2)),
@@ -138,15 +138,15 @@ SEEN = {
 }
 
 
-@pytest.mark.parametrize("name", SEEN)
+@pytest.mark.parametrize("name", WAVES_BY_NAME)
 def test_a_pattern_has_the_name_of_its_waves(name):
-    heights, orders = SEEN[name]
+    heights, orders = WAVES_BY_NAME[name]
     made_up = layers(100, ("g",))
     made_up.mean_height.values = np.broadcast_to(heights, made_up.mean_height.shape)
     made_up.fold_order.values = np.reshape(orders, made_up.fold_order.shape)
-    study = module_of_study("patterns", "seen")
+    study = module_of_study("patterns", "appearance")
     ((panel, layer),) = module_of_study("patterns", "published").layers_of_panels(made_up)
-    assert study.seen(panel, layer) == name
+    assert study.appearance(panel, layer) == name
 
 
 def test_the_full_size_is_the_published_one():

@@ -88,7 +88,7 @@ def write_page(
     pages.write_page(
         output,
         "page/explore.html",
-        ["page/theme.css", "page/uplot/uPlot.min.css", "page/explore.css"],
+        ["page/uplot/uPlot.min.css", "page/explore.css"],
         [pages.text_of(f"page/{name}") for name in PROGRAM],
         scale=scales[0],
         data=pages.markup(pages.data_of(data)),
@@ -244,10 +244,8 @@ def time_series(seed: Any, length: int = MAX_SERIES_LENGTH) -> NamedValues:
     window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
     size = columns["at"].size
     block = math.ceil(size / length)
-    whole = size // block * block  # a shorter last block would be noisier than the others
-    thinned = {
-        name: rounded(block_means(values[:whole], block)) for name, values in columns.items()
-    }
+    end = size // block * block  # a shorter last block would be noisier than the others
+    thinned = {name: rounded(block_means(values[:end], block)) for name, values in columns.items()}
     return {"clock": clock, "block": block, "measured": window} | thinned
 
 

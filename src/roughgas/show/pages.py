@@ -18,6 +18,8 @@ from roughgas.base import InputError, in_rst_with_bold
 from roughgas.base.files import readme, write_text
 
 SHOW_FOLDER = Path(__file__).parent
+THEME = "page/theme.css"
+"""Style sheet of the colours that all pages have."""
 POLICY = {
     "default-src": "'none'",
     "style-src": "'unsafe-inline'",
@@ -37,8 +39,8 @@ def write_page(
     scripts: Iterable[str] = (),
     **variables: Any,
 ) -> None:
-    """Write the page `output`: a template filled with style sheets, programs, and variables
-    (`variables`).
+    """Write the page `output`: a template filled with THEME and further style sheets, programs, and
+    variables (`variables`).
 
     `template` and `css` are names of files as in `text_of`, `scripts` the texts of programs.
     Variables are escaped unless they are Markup. Raises jinja2's UndefinedError if the template has
@@ -54,7 +56,10 @@ def write_page(
         trim_blocks=True,
         keep_trailing_newline=True,
     )
-    variables |= {"policy": markup(policy(*scripts)), "css": markup("".join(map(text_of, css)))}
+    variables |= {
+        "policy": markup(policy(*scripts)),
+        "css": markup("".join(map(text_of, [THEME, *css]))),
+    }
     html = environment.get_template(template).render(
         scripts=list(map(markup, scripts)), **variables
     )
@@ -107,8 +112,8 @@ def write_document(input: str | Path, *, output: str | Path) -> None:
         body = CONVERTERS[source.suffix](source.read_bytes(), source.parent)
     except UnicodeDecodeError as error:
         raise InputError("document", source, "be text in UTF-8") from error
-    css = ["page/theme.css", "page/document.css"]
-    write_page(output, "page/document.html", css, title=source.name, body=markup(body))
+    css, variables = ["page/document.css"], {"title": source.name, "body": markup(body)}
+    write_page(output, "page/document.html", css, **variables)
 
 
 def markdown_as_html(content: bytes, folder: Path | None = None) -> str:

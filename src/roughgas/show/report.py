@@ -6,6 +6,7 @@ A table of verdicts links to the pictures, which have their captions beside them
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 from roughgas.base import InputError, NamedValues, from_json, markdown, unknown_name_error
 from roughgas.base.files import readme
@@ -30,7 +31,6 @@ COLUMNS = ("experiment", "parameter", "value", "r", "beta", "n_seeds", "R", "R_s
 MAX_TABLE_ROWS = 400
 """Largest number of rows of a table in a page; the CSV file has all rows."""
 STEADY_WORDS = {1: "yes", 0: "no", -1: "not known"}
-THEME, VERDICTS = "page/theme.css", "page/verdicts.css"
 
 
 def write_front(
@@ -55,9 +55,7 @@ def write_front(
         texts = dict.fromkeys((picture.stem for picture in pictures), NOT_JUDGED + reservation)
     verdicts = read_verdicts(input, from_json(shows, "--shows"))
     records = [_figure_record(picture, texts, verdicts["claims"]) for picture in pictures]
-    css = [THEME, VERDICTS, "page/front.css"]
-    scripts = [text_of("page/verdicts.js")]
-    write_page(output, "page/front.html", css, scripts, figures=records, verdicts=verdicts)
+    _write_page(output, "page/front.html", "page/front.css", figures=records, verdicts=verdicts)
 
 
 def _figure_record(path: Path, texts: dict[str, str], claims: Sequence[NamedValues]) -> NamedValues:
@@ -126,9 +124,7 @@ def write_study(
         "tasks": markup(markdown_as_html(tasks.encode(), Path())),
         "ratios": markup(markdown_as_html(_ratio_table(Path(table)).encode())) if table else "",
     }
-    css = [THEME, VERDICTS, "page/document.css"]
-    scripts = [text_of("page/verdicts.js")] if claims else []
-    write_page(output, "page/study.html", css, scripts, **content)
+    _write_page(output, "page/study.html", "page/document.css", **content)
 
 
 def write_verdicts(inputs: Iterable[str | Path], *, studies: str, output: str | Path) -> None:
@@ -137,9 +133,16 @@ def write_verdicts(inputs: Iterable[str | Path], *, studies: str, output: str | 
     `studies` has their titles, pages and figures, JSON in the form of `read_verdicts_of_studies`.
     """
     verdicts = read_verdicts_of_studies(inputs, from_json(studies, "--studies"))
-    css = [THEME, VERDICTS, "page/document.css"]
-    scripts = [text_of("page/verdicts.js")]
-    write_page(output, "page/all_verdicts.html", css, scripts, verdicts=verdicts)
+    _write_page(output, "page/all_verdicts.html", "page/document.css", verdicts=verdicts)
+
+
+def _write_page(
+    output: str | Path, template: str, css: str, verdicts: NamedValues | None, **variables: Any
+) -> None:
+    """Write a page with a style sheet and `verdicts`, whose table has a program; None: no table."""
+    scripts = [] if verdicts is None else [text_of("page/verdicts.js")]
+    variables |= {"verdicts": verdicts}
+    write_page(output, template, ["page/verdicts.css", css], scripts, **variables)
 
 
 def _title_of(path: str) -> str:

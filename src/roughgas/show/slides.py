@@ -1,6 +1,5 @@
 """A page of slides for a lecture, with a slider to turn them: an HTML file that loads nothing."""
 
-import base64
 from collections.abc import Iterable
 from io import BytesIO
 from pathlib import Path
@@ -36,7 +35,7 @@ def write_slides(
     with rc_context(PARAMETERS):
         slide_contents = study_module(folder, "slides").draw(*map(read_reduced, inputs))
         slides = [_slide(*slide) for slide in slide_contents]
-    css = ["page/theme.css", "page/document.css", "page/slides.css"]
+    css = ["page/document.css", "page/slides.css"]
     scripts = [pages.text_of("page/slides.js")]
     pages.write_page(output, "page/slides.html", css, scripts, title=title, slides=slides)
 
@@ -57,7 +56,7 @@ def _picture(figure: "Figure") -> str:
         axes.set_facecolor("none")
     quality = {"quality": QUALITY}
     figure.savefig(file, format="webp", dpi=DPI, facecolor="none", pil_kwargs=quality)
-    return base64.b64encode(file.getvalue()).decode("ascii")
+    return pages.base64_of(file.getvalue())
 
 
 def _lighten_ink(figure: "Figure") -> None:

@@ -127,13 +127,12 @@ def figures_on(experiments: Iterable[str], shows: Mapping[str, Sequence[str]]) -
     `shows` has the experiments in each figure, by figure. A figure that shows all `experiments`
     stands for the others.
     """
-    needed = list(experiments)
-    complete = [name for name, shown in shows.items() if {*needed} <= {*shown}]
+    names = list(experiments)
+    complete = [figure for figure, shown in shows.items() if {*names} <= {*shown}]
     first = [
-        next((name for name, shown in shows.items() if experiment in shown), None)
-        for experiment in needed
+        next((figure for figure, shown in shows.items() if name in shown), None) for name in names
     ]
-    return complete[:1] or list(dict.fromkeys(name for name in first if name))
+    return complete[:1] or list(dict.fromkeys(figure for figure in first if figure))
 
 
 def label_of(figure: str) -> str:

@@ -94,9 +94,7 @@ class Products:
             {
                 products.name: {
                     "title": products.title,
-                    "page": f"{products.table_folder}page.html"
-                    if products.table_folder
-                    else "report.html",
+                    "page": products.page,
                     "shows": products.shown_to_claims,
                 }
                 for products in self.judged()

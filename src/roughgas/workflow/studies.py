@@ -47,11 +47,20 @@ class StudyProducts:
             self.combined = name if study.modules else f"{name}/data"
 
     @property
+    def names_of_tasks(self) -> set[str]:
+        """The names that stand for the dataset that combines the tasks of the study."""
+        return {TASKS, *self.study.modules}
+
+    @property
+    def page(self) -> str:
+        """The path of the page with its findings, in the folder of a scale."""
+        return f"{self.table_folder}page.html" if self.table_folder else "report.html"
+
+    @property
     def shown_to_claims(self) -> dict[str, list[str]]:
         """The experiments in each figure, by figure, as claims name them: tasks by the study."""
-        tasks = {TASKS, *self.study.modules}
         return {
-            figure: [self.name if name in tasks else name for name in names]
+            figure: [self.name if name in self.names_of_tasks else name for name in names]
             for figure, names in self.shown.items()
         }
 
@@ -164,7 +173,7 @@ class Studies:
         files += figure_files([study], scale, [".html"]) if study in self.with_slides else []
         files += products.tables(scale).values()
         if not products.study.documents:
-            return [*files, f"results/{scale}/{products.table_folder}page.html"]
+            return [*files, f"results/{scale}/{products.page}"]
         files += products.claims(scale, ".json", ".md")
         return files + documents(scale, *products.study.documents)
 
@@ -173,7 +182,7 @@ class Studies:
 
         The name TASKS, or a module's, stands for the dataset that combines the study's tasks.
         """
-        of_tasks = {TASKS, *products.study.modules}
+        of_tasks = products.names_of_tasks
         listed = list(names)
         reduced = self.sweeps.reduced(scale, [name for name in listed if name not in of_tasks])
         combined = COMBINED.format(scale=scale, combined=products.combined)

@@ -154,8 +154,8 @@ def _lines_of_data(figure: Figure) -> Iterator[Line2D]:
     """Yield the lines and symbols of all axes, without caps of error bars and full straight
     lines."""
     for axes in figure.axes:
-        bars = [part for part in axes.containers if isinstance(part, ErrorbarContainer)]
-        caps = {cap for part in bars for cap in part.lines[1]}
+        bars = [bar for bar in axes.containers if isinstance(bar, ErrorbarContainer)]
+        caps = {cap for bar in bars for cap in bar.lines[1]}
         for line in axes.lines:
             is_straight = len(line.get_xdata()) == 2 and line.get_linestyle() == "-"
             if line.get_visible() and line not in caps and not is_straight:
@@ -172,9 +172,9 @@ def _pattern(line: Line2D) -> tuple | None:
 
 def _is_paler(colour: tuple[float, float, float], key: tuple[float, float, float]) -> bool:
     """Return whether a colour is that of a key, or a mixture of it and white."""
-    left, right = 1.0 - np.array(colour), 1.0 - np.array(key)
-    share = left @ right / (right @ right)
-    return 0.0 < share < 1.01 and np.allclose(left, share * right, atol=0.01)
+    ink, ink_of_key = 1.0 - np.array(colour), 1.0 - np.array(key)
+    share = ink @ ink_of_key / (ink_of_key @ ink_of_key)
+    return 0.0 < share < 1.01 and np.allclose(ink, share * ink_of_key, atol=0.01)
 
 
 def _hidden_symbols(figure, axes) -> Iterator[str]:

@@ -252,8 +252,10 @@ def test_criteria_of_other_data_are_not_said_to_be_fixed(files):
 
 
 def test_all_verdicts_of_several_studies_are_one_table(files, tmp_path):
-    other = CLAIMS | {"claims": [claim("first", experiments=("walls.bed",)), claim("none")]}
-    (tmp_path / "walls.json").write_text(json.dumps(other))
+    claims_of_walls = CLAIMS | {
+        "claims": [claim("first", experiments=("walls.bed",)), claim("none")]
+    }
+    (tmp_path / "walls.json").write_text(json.dumps(claims_of_walls))
     paper = {"title": "The paper", "page": "report.html", "shows": SHOWS}
     walls = {"title": "Walls", "page": "walls/page.html", "shows": {"walls": ["walls.bed"]}}
     arguments = ["verdicts", str(files / "claims.json"), str(tmp_path / "walls.json")]

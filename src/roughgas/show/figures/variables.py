@@ -136,16 +136,16 @@ def draw(
 
 def _keys_of_theory(data: xr.Dataset, names: Sequence[str]) -> list[Line2D]:
     """Return a legend key for each style of theory, which names the variables or the equation."""
-    known = [name for name in names if name + THEORY in data]
-    along = [name for name in known if _coordinate(data, name)]
-    over = [name for name in known if name not in along]
+    with_theory = [name for name in names if name + THEORY in data]
+    along = [name for name in with_theory if _coordinate(data, name)]
+    over = [name for name in with_theory if name not in along]
     styles = (("dashes", over, BESIDE_POINTS), ("dots", along, BENEATH_LINES))
     keys = [
         Line2D([], [], color=GREY, label=f"{mark}: theory of {_listed(group)}", **style)
         for mark, group, style in styles
         if group
     ]
-    if "R" in names and "R" not in known and _has_theory(data):
+    if "R" in names and "R" not in with_theory and _has_theory(data):
         keys.append(panel.key(GREY, f"lines: $R$ of {equation_of(data.attrs).name}", "", "-"))
     return keys
 
@@ -269,11 +269,11 @@ def _message(data: xr.Dataset, names: Sequence[str], over: str, theories: Theori
     text = text[0].upper() + text[1:]
     if all(name in theories for name in names):
         return f"{text} over {panel.symbol_of(over)}, beside theory"
-    known = [name for name in names if name in theories]
-    beside = [f"{_listed(known)} beside theory"] if known else []
+    with_theory = [name for name in names if name in theories]
+    comparisons = [f"{_listed(with_theory)} beside theory"] if with_theory else []
     if "R" in names and "R" not in theories and _has_theory(data):
-        beside.append(f"$R$ beside {equation_of(data.attrs).name}")
-    return ", ".join([f"{text} over {panel.symbol_of(over)}", *beside])
+        comparisons.append(f"$R$ beside {equation_of(data.attrs).name}")
+    return ", ".join([f"{text} over {panel.symbol_of(over)}", *comparisons])
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -39,8 +39,7 @@ def write_living(*, config: str | Path, output: str | Path) -> None:
         "scenes": pages.markup(json.dumps(records)),
         "particles": records["cooling"]["particles"],
     }
-    css = ["page/theme.css", "living/page.css"]
-    pages.write_page(output, "living/page.html", css, [program], **variables)
+    pages.write_page(output, "living/page.html", ["living/page.css"], [program], **variables)
 
 
 def scenes(configuration: Configuration) -> dict[str, NamedValues]:
