@@ -4,6 +4,7 @@ import dataclasses
 import inspect
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from tests.study_modules import ROOT
@@ -12,7 +13,7 @@ from roughgas import config
 from roughgas.base import InputError
 from roughgas.base.files import PACKAGE
 from roughgas.base.reading import read_yaml
-from roughgas.workflow import jobs, paths, wildcards
+from roughgas.workflow import internals, jobs, paths, wildcards
 from roughgas.workflow.figures import Figures
 from roughgas.workflow.products import Products, files_of_checkout, files_to_pack
 from roughgas.workflow.studies import Studies, experiments_in_order
@@ -120,6 +121,22 @@ def test_one_job_makes_a_whole_sweep_that_takes_seconds(configuration, sweeps):
     at_full_size = Sweeps(dataclasses.replace(configuration, scale="paper"), [])
     (long,) = _blocks_of("sheared", at_full_size)
     assert long.at_each_r == ({},) and all("/r{r}/" in output for output in long.outputs)
+
+
+def test_the_display_counts_the_work_of_a_job_of_several_r(sweeps):
+    """Its wildcards have no r: the work follows from the paths of its points."""
+    (short,) = _blocks_of("sheared", sweeps)
+    wildcards_of_job = {"scale": "small", "experiment": "sheared"}
+    output = [path.format(**wildcards_of_job) for path in short.outputs]
+    job = SimpleNamespace(jobid=7, output=output, wildcards=wildcards_of_job)
+    run = internals.Run(sweeps, [job])
+    collisions = [
+        sweeps.collisions(**wildcards_of_job, r=r, beta=beta)
+        for r, beta in (re.search(r"/r([^/]+)/beta([^/]+)/", path).groups() for path in output)
+    ]
+    assert len(set(collisions)) > 4  # they differ by r and beta
+    overhead = len(output) * internals.POINT_OVERHEAD
+    assert run._total == pytest.approx(sum(collisions) + overhead)
 
 
 def _blocks_of(experiment, sweeps):

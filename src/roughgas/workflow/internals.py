@@ -65,14 +65,15 @@ class Run:
         """Return an estimate of a job's run time, in collisions; `points` are those it makes.
 
         It is for a run that makes points; a job that makes none counts only if it compiles a
-        kernel.
+        kernel. Values of r are read from the paths, since a job of several r has none of its own.
         """
         if not points:
             return KERNEL_EFFORT if job.rule.name == "compile_kernel" else 0.0
-        scale, experiment, r = (job.wildcards[key] for key in ("scale", "experiment", "r"))
-        betas = [file.parent.name.removeprefix("beta") for file in points]
-        collisions = sum(self._sweeps.collisions(scale, experiment, r, beta) for beta in betas)
-        return len(points) * POINT_OVERHEAD + collisions
+        scale, experiment = job.wildcards["scale"], job.wildcards["experiment"]
+        collisions = (
+            self._sweeps.collisions(scale, experiment, *_r_and_beta(file)) for file in points
+        )
+        return len(points) * POINT_OVERHEAD + sum(collisions)
 
     def start(self, record: Any) -> None:
         """Note that the job of a log record has started, and its viewable files."""
@@ -177,6 +178,11 @@ class Display:
 def _points(files: Iterable[Any]) -> list[Path]:
     """Return the paths of points among the output files of a job."""
     return [Path(str(file)) for file in files if Path(str(file)).match("seed*.nc")]
+
+
+def _r_and_beta(point: Path) -> tuple[str, str]:
+    """Return the labels of r and beta in the path of a point."""
+    return point.parts[-3].removeprefix("r"), point.parts[-2].removeprefix("beta")
 
 
 def _was_stopped(log: str) -> bool:
