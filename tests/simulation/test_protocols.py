@@ -57,6 +57,26 @@ def test_the_number_of_collisions_of_a_point_is_predicted(name):
     assert expected == pytest.approx(counted, rel=0.5)
 
 
+KICKED_GASES = {
+    "kicks": {"thermostat": {"power": 0.02, "spin_share": 0.0, "interval": 1.0}},
+    "bath": {"langevin": {"interval": 1.0, "drag": 0.05, "temperature": 2.0}},
+}
+
+
+@pytest.mark.parametrize("kicks", KICKED_GASES)
+def test_collisions_and_kicks_of_a_heated_gas_are_predicted(kicks):
+    """A particle gets a kick per T, which counts as half a collision."""
+    experiment = settings("heated", 80, [60, 60]) | {
+        "effects": {"spin": {"inertia": 0.5}, **KICKED_GASES[kicks]},
+        "schedule": {"kind": "steady", "equilibrate": 50, "measure": 200, "sample_every": 1},
+    }
+    simulation = Simulation()
+    steady.run(begin(experiment, 0.8, 0.0)[0], experiment, 1, simulation)
+    kicks = 80 * 250
+    contacts = expected_collisions(experiment, 0.8, 0.0) - 0.5 * kicks
+    assert contacts == pytest.approx(simulation.costs.collisions, rel=0.5)
+
+
 def test_a_bed_that_is_hardly_shaken_makes_few_collisions():
     """The square of its floor's speed underflows."""
     floor = BED["effects"]["floor"] | {"amplitude": 1e-200}

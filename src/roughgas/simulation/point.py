@@ -324,33 +324,66 @@ def _restitution_attributes(scene):
 
 
 def expected_collisions(experiment: Experiment, r: float, beta: float) -> float:
-    """Return an estimate of the number of collisions in a point.
+    """Return an estimate of the number of collisions in a point, kicks included.
 
     It serves the order and the progress of jobs. A target error is assumed to be met at once.
     """
     protocol, scene = protocols.protocol_of(experiment), build(experiment, r, beta)
     length = protocol.length(scene, experiment)  # T, or collisions of each particle
-    rate = _collision_rate(scene, experiment) if protocol.DRIVEN else 1.0
+    rate = _collision_rate(scene, experiment) + _kick_rate(scene) if protocol.DRIVEN else 1.0
     return 0.5 * experiment.particles * length * rate
+
+
+def _kick_rate(scene):
+    """Return the kicks of a particle per T; a kick takes about as long as half a collision."""
+    drives = scene.effects.thermostat, scene.effects.langevin
+    return sum(1.0 / drive.interval for drive in drives if drive is not None)
 
 
 def _collision_rate(scene, experiment):
     """Return an estimate of the collisions of a particle per T in a driven gas.
 
-    Contacts dissipate the power of a dilute gas: viscous heating under shear, or the power of a
-    floor by V. Kumaran, Phys. Rev. E 57, 5660 (1998), with the mean density of the bed. The
-    estimate is right to a factor of two for the paper's gases. Any other drive is taken to heat
-    each particle by about 1 m a^2/T^3.
+    Contacts dissipate the power of a dilute gas: viscous heating under shear, the power of random
+    kicks, or the power of a floor by V. Kumaran, Phys. Rev. E 57, 5660 (1998), with the mean
+    density of the bed. The estimate is right to a factor of two for the paper's gases. A Langevin
+    bath gives its temperature, any other drive about 1 m a^2/T^2.
     """
     effects, dimension, loss = scene.effects, len(scene.box), 1.0 - scene.restitution**2
     if effects.spin is not None:  # of tangential velocities, about half as large as normal ones
         q = effects.spin.inertia
         loss += 0.5 * q / (1.0 + q) * (1.0 - scene.roughness**2)
-    loss = max(loss, MIN_LOSS)
-    if effects.shear is not None:
+    is_elastic, loss = loss <= 0.0, max(loss, MIN_LOSS)
+    if effects.floor is not None and effects.floor.period < math.inf:
+        return _collision_rate_of_bed(scene, experiment, loss)
+    power, temperature = _kicks(experiment)
+    if effects.shear is not None and not power:
         return abs(shear_rate(scene)) * math.sqrt(2.0 / loss)
-    if effects.floor is None or effects.floor.period == math.inf:
+    if None in experiment.lengths:
         return 1.0 / math.sqrt(loss)
+    rate_at_1 = float(collision_frequency(1.0, packing(experiment), dimension))
+    if power and not is_elastic:  # a contact costs each of its particles half of the loss times T
+        temperature = (2.0 * power / (loss * rate_at_1)) ** (2.0 / 3.0)
+    return rate_at_1 * math.sqrt(temperature)
+
+
+def _kicks(experiment):
+    """Return the power per particle of random kicks, 0 if there are none, and a temperature.
+
+    This is the temperature of a Langevin bath, otherwise 1 m a^2/T^2.
+    """
+    thermostat, bath = (experiment.effects.get(name) for name in ("thermostat", "langevin"))
+    power = thermostat.power if thermostat else 0.0
+    if bath is None:
+        return power, 1.0
+    return power + bath.power + bath.spin_power, bath.temperature or bath.spin_temperature or 1.0
+
+
+def _collision_rate_of_bed(scene, experiment, loss):
+    """Return an estimate of the collisions of a particle per T in a bed on a shaken floor.
+
+    `loss` is the share of the energy that a contact dissipates.
+    """
+    effects, dimension = scene.effects, len(scene.box)
     layers = experiment.particles / math.prod(side for side in experiment.lengths[:-1] if side)
     speed = effects.floor.amplitude / effects.floor.period
     # 0.9 = 4 sqrt(2)/(2 pi) a of disks; spheres collide four times as often at the same n and T

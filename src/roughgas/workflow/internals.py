@@ -31,8 +31,10 @@ REDUNDANT_MESSAGES = (
 """Beginnings of messages that are redundant beside the lines on jobs."""
 UNWRITABLE_PATH = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", re.DOTALL)
 """A traceback that ends with an OSError, with its message and path."""
-POINT_OVERHEAD, KERNEL_EFFORT = 1e5, 1e7
-"""Overhead of a point, and time to compile a kernel, in collisions that take as long."""
+POINT_OVERHEAD, STEP_EFFORT = 1e5, 1e6
+"""Overhead of a point, and time of a step that makes no points, in collisions that take as long."""
+LONG_STEPS = {"compile_kernel": 1e7, "task": 1e7}
+"""Typical times of longer steps, in collisions, by rule."""
 UNEXPECTED = (AttributeError, TypeError, KeyError, ImportError, ValueError)
 """Exceptions to expect from a Snakemake with different internals."""
 LOCK_FILE = ".snakemake/alive"
@@ -54,21 +56,19 @@ class Run:
         points = {job.jobid: _points(job.output) for job in all_jobs}
         if any(points.values()):
             unit, self._counts = "points", {jobid: len(files) for jobid, files in points.items()}
-            self._work = {job.jobid: self._length(job, points[job.jobid]) for job in all_jobs}
         else:
             unit, self._counts = "steps", dict.fromkeys(points, 1)
-            self._work = dict.fromkeys(points, 1.0)
+        self._work = {job.jobid: self._length(job, points[job.jobid]) for job in all_jobs}
         self._total = sum(self._work.values())
         self._bar = ProgressBar(sweeps.configuration.scale, sum(self._counts.values()), unit)
 
     def _length(self, job: Any, points: list[Path]) -> float:
         """Return an estimate of a job's run time, in collisions; `points` are those it makes.
 
-        It is for a run that makes points; a job that makes none counts only if it compiles a
-        kernel. Values of r are read from the paths, since a job of several r has none of its own.
+        Values of r are read from the paths, since a job of several r has none of its own.
         """
         if not points:
-            return KERNEL_EFFORT if job.rule.name == "compile_kernel" else 0.0
+            return LONG_STEPS.get(job.rule.name, STEP_EFFORT)
         scale, experiment = job.wildcards["scale"], job.wildcards["experiment"]
         collisions = (
             self._sweeps.collisions(scale, experiment, *_r_and_beta(file)) for file in points
