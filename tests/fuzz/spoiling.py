@@ -28,7 +28,7 @@ QUICK, THOROUGH = (
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    for number in (15, int(TRIES or 2000))
+    for number in (15, int(TRIES or 700))
 )
 """Efforts of `make test` and of the extras; examples are the same unless FUZZ_TRIES is set."""
 EACH_EFFORT = pytest.mark.parametrize(

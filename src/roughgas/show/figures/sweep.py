@@ -246,6 +246,12 @@ TIME_SERIES_SIZE, OBSERVABLE_SIZE = (6.0, 4.6), (6.0, 3.2)  # inches
 MAX_TIMES = 400  # of a line; longer series are drawn as means over blocks
 WINDOW_COLOUR = "#eeeeee"
 ENERGIES = {"E_trans": r"$E_\mathrm{trans}$", "E_rot": r"$E_\mathrm{rot}$"}
+SYMBOLS_OF_VARIABLES = ENERGIES | {
+    "R": "$R$",
+    "T_ratio_species": "$T_k/T_1$",
+    "cos2_angle": r"$\langle\cos^2 \angle(V, \omega)\rangle$",
+}
+"""TeX of the symbols of variables."""
 TRUST_NOTES = {0: ", not trusted", -1: ", whether to trust it is not known"}
 
 
@@ -422,11 +428,8 @@ def line_label(values: xr.DataArray, index: tuple[int, ...]) -> str:
 
 def symbol_of_variable(name: str) -> str:
     """Return the symbol of a variable, such as a20 with indices, or else its name in words."""
-    if name in ENERGIES:
-        return ENERGIES[name]
-    if name == "R":
-        return "$R$"
-    return re.sub(r"^a(\d\d)\b", r"$a_{\1}$", name.replace("_", " "))
+    in_words = re.sub(r"^a(\d\d)\b", r"$a_{\1}$", name.replace("_", " "))
+    return SYMBOLS_OF_VARIABLES.get(name, in_words)
 
 
 def unit_suffix(values: xr.DataArray) -> str:
