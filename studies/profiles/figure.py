@@ -34,7 +34,7 @@ TITLES = (
     "(a) beds: R over height",
     "(b) beds: R over a period of the floor",
     "(c) beds: ways of averaging R",
-    "(d) sheared gases and a formula for them",
+    "(d) sheared gases, and a formula",
 )
 
 
