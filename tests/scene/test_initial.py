@@ -123,6 +123,17 @@ def test_a_narrow_box_with_a_periodic_axis_is_filled():
     assert random_positions(radius, [11.5, 1.6], [True, False], rng) is None
 
 
+def test_particles_without_a_site_lie_between_the_walls():
+    """The last of 19 particles finds no site; a random position may overlap a wall alone."""
+    radius = np.array([1.5, 1.0] * 9 + [1.0])
+    lengths, outside = [28.1, 6.9], 0.0
+    for seed in range(40):
+        position = random_positions(radius, lengths, [False, False], np.random.default_rng(seed))
+        gaps = np.minimum(position, lengths - position) - radius[:, None]
+        outside = min(outside, gaps.min())
+    assert outside >= -1e-12
+
+
 def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs(monkeypatch):
     """A lattice of the smallest particles would have 2.5e9 sites."""
     monkeypatch.setattr(initial, "MOST_OF_A_CLASS", 40_000)

@@ -62,6 +62,8 @@ def random_positions(
     if not siteless.any():
         return position
     anywhere = rng.uniform(size=position.shape) * np.array(lengths)
+    low = GROWN * radius[:, None]  # between walls; pushes do not move particles without overlap
+    anywhere = np.where(periodic, anywhere, np.clip(anywhere, low, np.array(lengths) - low))
     return _pushed_apart(np.where(siteless[:, None], anywhere, position), radius, lengths, periodic)
 
 
