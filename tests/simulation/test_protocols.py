@@ -63,11 +63,11 @@ KICKED_GASES = {
 }
 
 
-@pytest.mark.parametrize("kicks", KICKED_GASES)
-def test_collisions_and_kicks_of_a_heated_gas_are_predicted(kicks):
+@pytest.mark.parametrize("drive", KICKED_GASES)
+def test_collisions_and_kicks_of_a_heated_gas_are_predicted(drive):
     """A particle gets a kick per T, which counts as half a collision."""
     experiment = settings("heated", 80, [60, 60]) | {
-        "effects": {"spin": {"inertia": 0.5}, **KICKED_GASES[kicks]},
+        "effects": {"spin": {"inertia": 0.5}, **KICKED_GASES[drive]},
         "schedule": {"kind": "steady", "equilibrate": 50, "measure": 200, "sample_every": 1},
     }
     simulation = Simulation()

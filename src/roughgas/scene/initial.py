@@ -62,8 +62,6 @@ def random_positions(
     if not siteless.any():
         return position
     anywhere = rng.uniform(size=position.shape) * np.array(lengths)
-    low = GROWN * radius[:, None]  # between walls; pushes do not move particles without overlap
-    anywhere = np.where(periodic, anywhere, np.clip(anywhere, low, np.array(lengths) - low))
     return _pushed_apart(np.where(siteless[:, None], anywhere, position), radius, lengths, periodic)
 
 
@@ -116,6 +114,7 @@ def _pushed_apart(position, radius, lengths, periodic):
     low, high = radius[:, None], np.array(lengths) - radius[:, None]
     skin, moved, pairs = PAIR_SKIN * radius.mean(), math.inf, None
     for _ in range(MAX_STEPS):
+        position = np.where(periodic, position % lengths, np.clip(position, low, high))
         if moved > 0.5 * skin:
             pairs, moved = _near_pairs(position, radius, lengths, periodic, skin), 0.0
         i, j = pairs
@@ -132,7 +131,6 @@ def _pushed_apart(position, radius, lengths, periodic):
         np.add.at(step, j, -push * (1.0 - share))
         step = np.clip(step, -0.5 * skin, 0.5 * skin)
         position = position + step
-        position = np.where(periodic, position % lengths, np.clip(position, low, high))
         moved += float(np.abs(step).max()) * math.sqrt(len(lengths))
     return None
 

@@ -330,13 +330,13 @@ def expected_collisions(experiment: Experiment, r: float, beta: float) -> float:
     """
     protocol, scene = protocols.protocol_of(experiment), build(experiment, r, beta)
     length = protocol.length(scene, experiment)  # T, or collisions of each particle
-    rate = _collision_rate(scene, experiment) + _kick_rate(scene) if protocol.DRIVEN else 1.0
+    rate = _collision_rate(scene, experiment) + _kick_rate(experiment) if protocol.DRIVEN else 1.0
     return 0.5 * experiment.particles * length * rate
 
 
-def _kick_rate(scene):
+def _kick_rate(experiment):
     """Return the kicks of a particle per T; a kick takes about as long as half a collision."""
-    drives = scene.effects.thermostat, scene.effects.langevin
+    drives = map(experiment.effects.get, ("thermostat", "langevin"))
     return sum(1.0 / drive.interval for drive in drives if drive is not None)
 
 

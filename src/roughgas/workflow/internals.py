@@ -22,6 +22,7 @@ from typing import Any
 from roughgas.base import NamedValues, folder_lock
 from roughgas.simulation.progress import ProgressBar
 from roughgas.workflow.figures import unknown_with_suggestions
+from roughgas.workflow.paths import labels_of_point
 from roughgas.workflow.sweeps import Sweeps
 
 REDUNDANT_MESSAGES = (
@@ -70,10 +71,10 @@ class Run:
         if not points:
             return LONG_STEPS.get(job.rule.name, STEP_EFFORT)
         scale, experiment = job.wildcards["scale"], job.wildcards["experiment"]
-        collisions = (
-            self._sweeps.collisions(scale, experiment, *_r_and_beta(file)) for file in points
-        )
-        return len(points) * POINT_OVERHEAD + sum(collisions)
+        collisions = 0.0
+        for r, beta, _ in map(labels_of_point, points):
+            collisions += self._sweeps.collisions(scale, experiment, r, beta)
+        return len(points) * POINT_OVERHEAD + collisions
 
     def start(self, record: Any) -> None:
         """Note that the job of a log record has started, and its viewable files."""
@@ -178,11 +179,6 @@ class Display:
 def _points(files: Iterable[Any]) -> list[Path]:
     """Return the paths of points among the output files of a job."""
     return [Path(str(file)) for file in files if Path(str(file)).match("seed*.nc")]
-
-
-def _r_and_beta(point: Path) -> tuple[str, str]:
-    """Return the labels of r and beta in the path of a point."""
-    return point.parts[-3].removeprefix("r"), point.parts[-2].removeprefix("beta")
 
 
 def _was_stopped(log: str) -> bool:

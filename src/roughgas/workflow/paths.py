@@ -29,6 +29,12 @@ def alternatives(labels: Iterable[object]) -> str:
     return "|".join(re.escape(str(label)) for label in labels) or "(?!)"
 
 
+def labels_of_point(path: str | Path) -> tuple[str, str, str]:
+    """Return the labels of r, beta and the seed in the path of a point."""
+    r, beta, seed = str(path).removesuffix(".nc").rsplit("/", 3)[1:]
+    return r.removeprefix("r"), beta.removeprefix("beta"), seed.removeprefix("seed")
+
+
 def folder_of(scale: str) -> str:
     """Return the subfolder of figures/ for a scale, such as "small/": "" for `paper`."""
     return "" if scale == PAPER else f"{scale}/"

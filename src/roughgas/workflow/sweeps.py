@@ -19,7 +19,7 @@ from roughgas.config import Configuration, WrittenExperiment, study_code
 from roughgas.simulation.experiment import Experiment
 from roughgas.workflow import jobs
 from roughgas.workflow.fingerprints import code_of_points, with_files
-from roughgas.workflow.paths import KERNEL, POINT, REDUCED
+from roughgas.workflow.paths import KERNEL, POINT, REDUCED, labels_of_point
 from roughgas.workflow.wildcards import located
 
 URGENT = 10**12
@@ -271,8 +271,7 @@ def points_of_job(outputs: Iterable[str]) -> list[str]:
 
     These are all combinations of some r, betas and seeds.
     """
-    paths = [output.removesuffix(".nc").rsplit("/", 3)[1:] for output in outputs]
-    r, betas, seeds = (dict.fromkeys(labels) for labels in zip(*paths, strict=True))
-    options = [f"--r={label.removeprefix('r')}" for label in r]
-    options += [f"--beta={label.removeprefix('beta')}" for label in betas]
-    return [*options, "--seed", *(label.removeprefix("seed") for label in seeds)]
+    points = map(labels_of_point, outputs)
+    r, betas, seeds = (dict.fromkeys(labels) for labels in zip(*points, strict=True))
+    options = [f"--r={label}" for label in r] + [f"--beta={label}" for label in betas]
+    return [*options, "--seed", *seeds]
